@@ -92,7 +92,7 @@ impl<S: Scalar> Plane<S> {
         sample: &CoreSample<S>,
         beside: &impl Neighbour<S>,
     ) -> (CoreCommand<S>, Seen) {
-        self.recorder.told(&shared.buffer, sample);
+        self.recorder.push_sample(&shared.buffer, sample);
         let command = self.state.tick(sample, beside, &self.coeffs);
         let seen = (self.recorder).push(shared, sample, &self.state, &command);
         (command, seen)

@@ -261,7 +261,7 @@ impl Found {
             shapes,
             levitation: Some(LoopAnalysis {
                 stable,
-                loop_modes: linear_loop::told(&at_spin),
+                loop_modes: linear_loop::oscillating(&at_spin),
                 sensitivity: match stable {
                     true => closed.sensitivity_peaks(&at_spin),
                     false => Vec::new(),

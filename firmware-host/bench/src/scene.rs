@@ -89,7 +89,7 @@ pub struct Scene {
     /// The levitation controller, where one holds the whole rotor; else each plane has its own.
     pub levitation: Option<WholeLevitationParams>,
     /// The rotor as its supervisor is told it, where that is another than it is.
-    pub told: Option<Shaft>,
+    pub configured_shaft: Option<Shaft>,
     /// What is allowed and yet unlikely to be meant, with file and line.
     pub warnings: Vec<String>,
 }

@@ -105,7 +105,7 @@ pub(crate) unsafe fn call(
     let called = catch_unwind(AssertUnwindSafe(|| what(&mut served.instance)));
     let called = called.unwrap_or_else(|panic| {
         let fault = panicked(&*panic);
-        let _said_below = served.instance.fail(fault.text.clone());
+        let _reported_below = served.instance.fail(fault.text.clone());
         Err(fault)
     });
     match called {

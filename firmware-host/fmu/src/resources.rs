@@ -23,7 +23,7 @@ pub(crate) struct Resource {
 pub struct ResourceError {
     /// The file.
     pub path: PathBuf,
-    /// What the system said.
+    /// The system's message.
     pub reason: io::Error,
 }
 

@@ -248,7 +248,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
             }
         }
         None => {
-            let nominal = told(args, args.numbers.nominal()?.nominal()?);
+            let nominal = with_runout(args, args.numbers.nominal()?.nominal()?);
             if nominal.runout_m.is_some() && nominal.spin_hz.is_none() {
                 return Err(CommandError::Numbers {
                     message: "--runout-m is given without --spin-hz".to_owned(),
@@ -295,7 +295,7 @@ fn listing(args: &AdviseArgs, advice: &Advice, format: Format) -> Result<String,
 }
 
 /// With the runout of the command line.
-fn told(args: &AdviseArgs, nominal: Nominal) -> Nominal {
+fn with_runout(args: &AdviseArgs, nominal: Nominal) -> Nominal {
     Nominal {
         runout_m: args.runout_m.or(nominal.runout_m),
         ..nominal
@@ -316,7 +316,7 @@ fn of_plane(
     }
     Advice::of_plane(
         title,
-        &told(args, plane.nominal),
+        &with_runout(args, plane.nominal),
         &plane.decided,
         &plane.overrides,
     )

@@ -47,6 +47,6 @@ pub(super) fn of_claims(claims: &[Claim]) -> String {
     }
     let kept = claims.iter().filter(|claim| claim.holds).count();
     let told = Tone::of_claim(kept == claims.len())
-        .said(&format!("{kept} of {} claims hold", claims.len()));
+        .paint(&format!("{kept} of {} claims hold", claims.len()));
     format!("{lines}\n{told}")
 }

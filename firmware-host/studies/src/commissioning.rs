@@ -539,7 +539,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
             Chapter::new(
                 "What logs of rotors in two planes tell",
                 vec![
-                    Block::text(of_rotor_logs.story),
+                    Block::text(of_rotor_logs.summary),
                     Block::table(logs::COLUMNS, of_rotor_logs.rows),
                 ],
             ),

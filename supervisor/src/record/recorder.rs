@@ -222,7 +222,7 @@ impl<S: Scalar> Recorder<S> {
 
     /// Takes in what a tick is told. Before the tick, which needs the registers for something else then.
     #[inline]
-    pub(crate) fn told<const N: usize>(
+    pub(crate) fn push_sample<const N: usize>(
         &mut self,
         buffer: &RecordBuffer<N>,
         sample: &CoreSample<S>,

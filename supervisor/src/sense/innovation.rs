@@ -92,7 +92,7 @@ impl<S: Scalar> Innovation<S> {
     }
 
     /// How much farther than was told noise may take a sample.
-    pub(crate) fn untold(&self, coeffs: &Coeffs<S>) -> S {
+    pub(crate) fn excess_noise(&self, coeffs: &Coeffs<S>) -> S {
         (self.level - coeffs.guard.configured_noise).max(S::ZERO) * S::from_f32(DOUBTED_FROM)
     }
 

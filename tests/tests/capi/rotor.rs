@@ -1,7 +1,7 @@
 //! The supervisor of a rotor in C: what Rust computes, in the emulator too; and the example with a model of its own.
 
-use crate::firmware::said_by;
-use crate::library::{Target, beside, built, capi, good, host_program, said_with_rig};
+use crate::firmware::output_on;
+use crate::library::{Target, beside, built, capi, good, host_program, output_with_rig};
 use crate::rig::Rig;
 use std::process::Command;
 use supervisor::{PlanePositions, RotorSupervisor, Shaft};
@@ -49,20 +49,20 @@ fn pair_of_rust() -> String {
 /// Requirement: SR-34
 #[test]
 fn a_rotor_in_c_does_what_it_does_in_rust() {
-    let Some(said) = said_with_rig("pair.c") else {
+    let Some(output) = output_with_rig("pair.c") else {
         return;
     };
-    assert_eq!(said.lines().last(), Some(pair_of_rust().as_str()));
+    assert_eq!(output.lines().last(), Some(pair_of_rust().as_str()));
 }
 
 #[test]
 fn a_rotor_in_firmware_does_what_it_does_in_rust() {
     for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(said) = said_by(target, &beside("pair.c")) else {
+        let Some(output) = output_on(target, &beside("pair.c")) else {
             return;
         };
-        let last = said.lines().last();
-        assert_eq!(last, Some(pair_of_rust().as_str()), "{target:?}: {said}");
+        let last = output.lines().last();
+        assert_eq!(last, Some(pair_of_rust().as_str()), "{target:?}: {output}");
     }
 }
 
@@ -81,8 +81,8 @@ fn a_model_of_someone_elses_is_driven() {
     };
     good(&output);
     let run = |blow: &str| -> Vec<(usize, bool)> {
-        let said = good(&Command::new(&program).arg(blow).output().unwrap());
-        let lines = said.lines().map(|line| {
+        let output = good(&Command::new(&program).arg(blow).output().unwrap());
+        let lines = output.lines().map(|line| {
             let (_, figures) = line.split_once(": ").unwrap();
             let (touches, _) = figures.split_once(' ').unwrap();
             (

@@ -65,12 +65,12 @@ fn push_table(page: &mut HtmlPage, name: &str, run: &PolicyRun) {
 }
 
 fn row(happening: &Happening) -> (Markup, [String; 4]) {
-    let (t_ms, said) = (1e3 * happening.t_s, happening.said);
-    let events = names(said.events.iter_names());
+    let (t_ms, supervisor) = (1e3 * happening.t_s, happening.supervisor);
+    let events = names(supervisor.events.iter_names());
     let words = [
-        said.mode.name().to_owned(),
-        figures(said.severity.into()),
-        names(said.limits.iter_names()),
+        supervisor.mode.name().to_owned(),
+        figures(supervisor.severity.into()),
+        names(supervisor.limits.iter_names()),
         match happening.touches_before {
             0 => events,
             touches => format!("{events} (touches before: {touches})"),

@@ -1,7 +1,7 @@
 //! The conclusion of a page in a sentence or two, before any number.
 
 use super::plot::text::figures;
-use crate::record::story::percent;
+use crate::record::narrative::percent;
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::supervision::Supervision;

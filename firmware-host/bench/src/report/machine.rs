@@ -10,7 +10,7 @@ use super::quantities::{BENDING_ENERGY, SLOPE, bending};
 use super::summary::{Fact, SceneSummary, summary};
 use super::track::Track;
 use super::{
-    disturbances_told, happenings, limits, push_far, push_sections, push_table, times_of,
+    disturbance_lines, happenings, limits, push_far, push_sections, push_table, times_of,
     verification, warnings,
 };
 use crate::report::plot::PlotError;
@@ -57,7 +57,7 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
         headline: headline(&concluded),
         story: scene.story.clone(),
         facts: facts(scene),
-        points: disturbances_told(&told.disturbances),
+        points: disturbance_lines(&told.disturbances),
         warnings: warnings(&scene.warnings, results),
     };
     let mut document = Document::begun(&head);

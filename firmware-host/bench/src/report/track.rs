@@ -150,12 +150,12 @@ impl Track {
         ];
         limits.extend(scene.force_max_n.map(|cap| ("force cap", cap)));
         let happenings = run.happenings.all.iter().map(|happening| {
-            let said = happening.said;
+            let supervisor = happening.supervisor;
             TrackEvent {
                 t: 1e3 * happening.t_s,
-                mode: said.mode.name(),
-                limits: names(said.limits.iter_names()),
-                events: names(said.events.iter_names()),
+                mode: supervisor.mode.name(),
+                limits: names(supervisor.limits.iter_names()),
+                events: names(supervisor.events.iter_names()),
             }
         });
         let rotor = |row: &TraceRow| {

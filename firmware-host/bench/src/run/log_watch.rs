@@ -27,7 +27,7 @@ pub struct InLog {
 
 /// What a log is, and what of it the supervisor had.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LogTold {
+pub struct LogSummary {
     pub rows: usize,
     pub rate_hz: f64,
     pub from_s: f64,
@@ -45,7 +45,7 @@ pub struct LogTold {
     pub events: Vec<InLog>,
 }
 
-impl LogTold {
+impl LogSummary {
     /// In words: what it is, what it lacks, and when its events begin.
     pub fn sentences(&self) -> String {
         let mut out = format!(
@@ -101,7 +101,7 @@ impl LogTold {
 
 /// A log that was watched.
 pub struct Watched {
-    pub told: LogTold,
+    pub summary: LogSummary,
     /// Flight records of its events, one after the other.
     pub records: Vec<u8>,
 }
@@ -204,10 +204,10 @@ pub fn watch(spec: &mut Spec, path: &Path, renamed: &[Renamed]) -> Result<Watche
     let log = LogFile::of_ticks(path, renamed)?;
     let (period_s, ticks) = log.ticks(TIME)?;
     let rate_hz = 1.0 / period_s;
-    let told_hz = spec
+    let hz = spec
         .get("run.sample_rate_hz")?
         .and_then(toml::Value::as_float);
-    if told_hz.is_none_or(|told_hz| (told_hz / rate_hz - 1.0).abs() > SAME_RATE) {
+    if hz.is_none_or(|hz| (hz / rate_hz - 1.0).abs() > SAME_RATE) {
         spec.set("run.sample_rate_hz", rate_hz)?;
     }
     // A row has readings of both planes.
@@ -300,7 +300,7 @@ fn watched(
         largest_m.map(|r| r / scene.clearance_m(*plane))
     });
     Ok(Watched {
-        told: LogTold {
+        summary: LogSummary {
             rows: ticks.len(),
             rate_hz: 1.0 / period_s,
             from_s: times[0],

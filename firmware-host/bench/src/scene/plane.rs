@@ -7,7 +7,7 @@ use crate::scene::diagnostic::SceneError;
 use crate::scene::events::events;
 use crate::scene::guess;
 use crate::scene::limits::{damping_n_s_m, whirl_speed_m_s};
-use crate::scene::lint::{Told, unseen, warnings};
+use crate::scene::lint::{Setup, unseen, warnings};
 use crate::scene::nominal::{NominalKeys, config, nominal, overrides};
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::plant::{hardening_key, plant};
@@ -94,13 +94,13 @@ impl PlaneSpec {
         let supervisor = acts(PolicyKind::Supervisor)
             .then(|| config(&nominal, &nominal_keys, &overrides, text))
             .transpose()?;
-        let told = Told {
+        let setup = Setup {
             nominal: &nominal,
             overrides: &overrides,
             config: supervisor.as_ref(),
         };
         let warnings = match text.warns {
-            true => [warnings(self, &plant, told), unseen(self)].concat(),
+            true => [warnings(self, &plant, setup), unseen(self)].concat(),
             false => Vec::new(),
         };
         let plane = PlaneScene {

@@ -155,7 +155,7 @@ impl Spec {
             start,
             planes: all.into_iter().map(|resolved| resolved.plane).collect(),
             levitation,
-            told: None,
+            configured_shaft: None,
             warnings,
         };
         (scene.machine_with_loads().validate())

@@ -48,8 +48,8 @@ impl Scene {
     ) -> Option<RotorSupervisor<TICKS>> {
         let [first, second] = self.supervised_planes()?;
         let configs = [first.supervisor?, second.supervisor?];
-        let made = match &self.told {
-            Some(told) => RotorSupervisor::new(told, &configs),
+        let made = match &self.configured_shaft {
+            Some(shaft) => RotorSupervisor::new(shaft, &configs),
             None => RotorSupervisor::from_planes(&self.shaft()?, &configs),
         };
         made.ok()

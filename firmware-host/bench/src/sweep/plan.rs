@@ -262,7 +262,7 @@ fn check(
     let Variation {
         key,
         values,
-        said_by,
+        written_at,
     } = variation;
     spec.get(key)
         .map_err(|error| at(&format!("vary[{index}].key"), error))?;
@@ -278,7 +278,7 @@ fn check(
         _ => vec![values.at(1.0 / 3.0)],
     };
     for value in tried {
-        (spec.clone().set(key, value)).map_err(|error| at(said_by, error))?;
+        (spec.clone().set(key, value)).map_err(|error| at(written_at, error))?;
     }
     Ok(())
 }

@@ -31,7 +31,7 @@ impl Machine {
     }
 
     fn shaft(&self) -> Option<Shaft> {
-        self.scene.told.or_else(|| self.scene.shaft())
+        self.scene.configured_shaft.or_else(|| self.scene.shaft())
     }
 
     /// The rotor of both planes, as the supervisor is told it.

@@ -3,7 +3,7 @@
 use crate::cli::error::CommandError;
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::identify::Findings;
-use firmware_bench::record::story::Event;
+use firmware_bench::record::narrative::Event;
 use firmware_bench::run::again::scene_of_event;
 use firmware_bench::run::recording::recorded;
 use firmware_bench::run::verdict::{FailedRun, Results};
@@ -74,10 +74,10 @@ pub(super) fn allowances(
 
 /// Names of parameters of which record and scene have values more than a hundredth apart.
 fn differing(record: &PlaneRecord, scene: &Scene) -> Vec<&'static str> {
-    let (Some(told), Some(derived)) = (record.config, scene.planes[0].supervisor) else {
+    let (Some(recorded), Some(derived)) = (record.config, scene.planes[0].supervisor) else {
         return Vec::new();
     };
-    let values = told.values().into_iter().zip(derived.values());
+    let values = recorded.values().into_iter().zip(derived.values());
     let apart = |(a, b): (f32, f32)| (a - b).abs() > 0.01 * a.abs().max(b.abs());
     let named = PARAMETERS.iter().zip(values);
     named

@@ -171,10 +171,10 @@ pub fn compare(scene: &Scene, trace: &Trace, last: u32, found: &Findings) -> Cou
         Some((0.0, mu)) => Some(mu),
         Some(_) => None,
     };
-    let told = &found.identified;
+    let identified = &found.identified;
     if let Some(mu) = mu {
-        (counts.friction).of_estimate(told.friction_coefficient, mu, 0.1 * mu);
+        (counts.friction).of_estimate(identified.friction_coefficient, mu, 0.1 * mu);
     }
-    (counts.restitution).of_estimate(told.restitution, restitution(&plant), 0.1);
+    (counts.restitution).of_estimate(identified.restitution, restitution(&plant), 0.1);
     counts
 }

@@ -54,17 +54,17 @@ fn ran(job: &Job<'_>) -> Option<Ran> {
     if let Some(found) = event.findings() {
         ran.counts = compare(scene, &trace, last, &found);
     }
-    // Where the event is the only one what came of it is what came of the run.
+    // Where the event is the only one its outcome is the outcome of the run.
     let report = read_out.report;
-    if let Some(told) = event.told()
+    if let Some(narrative) = event.narrative()
         && report.landings + report.nuisance_engagements == 1
         && report.handed_back == 0
     {
-        let levitated = told.outcome == supervisor::Mode::Levitated.name();
+        let levitated = narrative.outcome == supervisor::Mode::Levitated.name();
         // The summary has how it ended; that it whirled before is another of its figures.
         let same = levitated == figures.free_at_end;
         ran.counts.outcomes.count(same);
-        ran.differs = (!same).then_some((told.outcome, figures.free_at_end));
+        ran.differs = (!same).then_some((narrative.outcome, figures.free_at_end));
     }
     Some(ran)
 }

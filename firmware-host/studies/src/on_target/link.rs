@@ -146,7 +146,7 @@ impl Board {
         self.line.input.write_all(&[QUIT])?;
         match self.running.wait(PATIENCE) {
             Some(ended) if ended.well => Ok(()),
-            Some(ended) => Err(LinkError::Answer(ended.said().into_bytes())),
+            Some(ended) => Err(LinkError::Answer(ended.all_output().into_bytes())),
             None => Err(LinkError::NoEnd),
         }
     }

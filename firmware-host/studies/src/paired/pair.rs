@@ -98,14 +98,14 @@ struct Counter {
 
 impl Recorder for Counter {
     fn row(&mut self, row: &TraceRow) {
-        let Some(said) = row.supervisor.filter(|_| !row.mode_change) else {
+        let Some(trace) = row.supervisor.filter(|_| !row.mode_change) else {
             return;
         };
         let counted = &mut self.counted;
         counted.run_s += self.period_s;
-        counted.engagements += u64::from(said.events.contains(Events::ENGAGED));
-        counted.handed_back += u64::from(said.events.contains(Events::HANDED_BACK));
-        if said.mode.is_engaged() {
+        counted.engagements += u64::from(trace.events.contains(Events::ENGAGED));
+        counted.handed_back += u64::from(trace.events.contains(Events::HANDED_BACK));
+        if trace.mode.is_engaged() {
             counted.engaged_s += self.period_s;
             self.running_s += self.period_s;
             counted.longest_s = counted.longest_s.max(self.running_s);

@@ -10,7 +10,7 @@ use system_tests::target::skipped;
 use system_tests::{host, root};
 use tempfile::TempDir;
 
-fn said(output: &Output) -> String {
+fn stdout(output: &Output) -> String {
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{error}");
     String::from_utf8_lossy(&output.stdout).into_owned()
@@ -20,7 +20,7 @@ fn said(output: &Output) -> String {
 fn queue(cluster: &Cluster) -> Vec<(String, String, String)> {
     let mut squeue = cluster.command("squeue");
     squeue.args(["--noheader", "--array", "--format=%i %T %N"]);
-    let text = said(&squeue.output().unwrap());
+    let text = stdout(&squeue.output().unwrap());
     let line = |line: &str| {
         let mut words = line.split_whitespace().map(str::to_owned);
         let (name, state) = (words.next()?, words.next()?);
@@ -33,7 +33,7 @@ fn queue(cluster: &Cluster) -> Vec<(String, String, String)> {
 fn ends(cluster: &Cluster) -> BTreeMap<String, (u32, String)> {
     let mut scontrol = cluster.command("scontrol");
     scontrol.args(["--oneliner", "show", "job"]);
-    let text = said(&scontrol.output().unwrap());
+    let text = stdout(&scontrol.output().unwrap());
     let value = |line: &str, key: &str| {
         let words = line.split_whitespace();
         words
@@ -88,7 +88,7 @@ fn an_array_that_loses_a_node_merges_to_the_bytes_of_one_machine() {
         .arg(format!("--array=1-{TASKS}"))
         .arg(root().join("firmware-host/scenes/sweeps/slurm.sh"))
         .args([&file, &parts]);
-    said(&sbatch.output().unwrap());
+    stdout(&sbatch.output().unwrap());
 
     // Some tasks are done, and one runs on the node that is lost: once that is frozen it cannot end any more.
     let until = Instant::now() + Duration::from_secs(240);
