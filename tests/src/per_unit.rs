@@ -85,7 +85,7 @@ pub fn record(
             case.scene.planes[0].levitation = Some(tuned);
             case.scene.duration_s = case.scene.duration_s.min(longest_s);
             let config = case.scene.planes[0].supervisor.expect("plants have one");
-            let (supervisor, tape) = recording(&config).expect("valid");
+            let (supervisor, log) = recording(&config).expect("valid");
             let policy = supervised(&case.scene, supervisor).expect("complete");
             // For the stream a run is good up to where it cannot be trusted any further.
             let _ended = run_policy(
@@ -95,12 +95,12 @@ pub fn record(
                 &mut |_| {},
             );
             let scaling = config.scaling();
-            let tape = tape.take();
+            let log = log.take();
             streams.push(Stream {
                 name: format!("{}, {:.0} kHz, {}", plant.name, 1e-3 * rate_hz, case.name),
                 group: case.group,
                 config,
-                samples: tape.iter().map(|(s, _)| scaling.sample(s)).collect(),
+                samples: log.iter().map(|(s, _)| scaling.sample(s)).collect(),
             });
         }
     }

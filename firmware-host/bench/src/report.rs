@@ -6,7 +6,6 @@ pub mod campbell;
 pub mod commission;
 mod data;
 mod document;
-pub mod drawn;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod happenings;
@@ -20,6 +19,7 @@ mod panels;
 pub mod plot;
 mod quantities;
 pub mod record;
+pub mod rendered;
 mod slow_track;
 pub mod summary;
 pub mod table;

@@ -7,7 +7,7 @@ use crate::campaign::{
     Block, Chapter, Claim, Extent, Machines, Progress, Report, StudyError, run_all,
 };
 use crate::machines::draw::Draw;
-use crate::machines::drawn::Machine;
+use crate::machines::random::RandomMachine;
 use crate::paired::sensors::Sensors;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Supervise, supervised};
@@ -340,7 +340,7 @@ const SENSORS: [Sensors; 6] = [
 
 /// A machine that levitates for as long as the check takes; and whether its unbalance shows.
 fn scene(seed: u64, number: u64, sensors: Sensors) -> Result<(Scene, bool), String> {
-    let machine = Machine::drawn(seed, number).map_err(|error| error.to_string())?;
+    let machine = RandomMachine::sampled(seed, number).map_err(|error| error.to_string())?;
     let mut draw = Draw::new(seed ^ OF_ROTORS, number);
     let eccentricity_m = machine.clearance_m() * draw.decades(2e-3, 0.05);
     let text = machine.toml.replacen(

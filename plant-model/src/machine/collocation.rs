@@ -48,7 +48,7 @@ struct Touch {
     normal_m_s: f64,
     force_n: f64,
     /// What is positive while contact lasts.
-    lift: f64,
+    normal_guard: f64,
     penetration_m: f64,
     whirl_m_s: f64,
     slip_m_s: f64,
@@ -396,7 +396,7 @@ impl Collocation {
             plane.grip = Grip::none(system, p);
             self.through(&mut plane.distance, |at| at.touches[p].distance_m);
             self.through(&mut plane.force, |at| at.touches[p].force_n);
-            self.through(&mut plane.lift, |at| at.touches[p].lift);
+            self.through(&mut plane.normal_guard, |at| at.touches[p].normal_guard);
             self.through(&mut plane.normal_n_m, |at| {
                 per_m(at) * at.touches[p].force_n
             });

@@ -302,7 +302,7 @@ impl Machine {
         let guard = match (phase, guard) {
             (Phase::Contact(..), guard) if guard != Guard::Normal => {
                 let force = self.stepper.series.parts.planes[p]
-                    .lift(&self.system.planes[p])
+                    .normal_guard(&self.system.planes[p])
                     .with_slope(reach.theta, self.stepper.series.parts.order);
                 let rate = force.1 / self.stepper.series.parts.step_s;
                 if force.0 < -rate * moment_s {

@@ -15,7 +15,7 @@ use super::poles::MagnetLaw;
 use super::rows::{AnyRows, Pushes, Rows, of_rows};
 use super::system::{Channel, MachineState, MachineSystem, PlaneData, holding_channels};
 use crate::V2;
-use crate::integrate::enough::LOWEST_ORDER;
+use crate::integrate::order_control::LOWEST_ORDER;
 use crate::mode::{Phase, Slide, Whirl};
 use crate::params::{ContactLaw, SlidingFriction};
 use crate::series::{INVERSE, Scalar, Series};

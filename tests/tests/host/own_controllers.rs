@@ -5,7 +5,7 @@ mod mistakes;
 
 use firmware_bench::device::external::{Caller, Make, Question, Setup, Step};
 use firmware_bench::device::levitation::{Levitation, LevitationParams};
-use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
+use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
 use firmware_bench::run::trace::{Recorder, Trace};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -321,7 +321,7 @@ fn traces(folder: &Path, text: &str, kind: PolicyKind) -> Vec<Trace> {
         planes: traces.iter_mut().map(|t| t as &mut dyn Recorder).collect(),
         axis: None,
     };
-    record(&scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
+    record(&scene, kind, recorders, Accuracy::default(), &mut |_| {}).unwrap();
     traces
 }
 

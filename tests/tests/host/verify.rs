@@ -1,6 +1,6 @@
 //! `run --verify`: a run's own estimate of its global error, and hints for people on the way.
 
-use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
+use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::recording::{TraceFiles, recorded};
 use firmware_bench::run::trace::{Recorder, Trace};
@@ -115,16 +115,16 @@ fn the_estimate_sees_what_is_held_over_parts() {
     let error_and_estimate = |edits: &[(&str, &str)], kind| {
         let scene = Scene::load(&edited(folder.path(), "overload_then_release", edits)).unwrap();
         let (_, trace, v) = verified(&scene, kind);
-        let rigour = Rigour {
+        let accuracy = Accuracy {
             parts: 64,
-            ..Rigour::default()
+            ..Accuracy::default()
         };
         let mut fine = Trace::default();
         let recorders = Recorders {
             planes: vec![&mut fine],
             axis: None,
         };
-        record(&scene, kind, recorders, rigour, &mut |_| {}).unwrap();
+        record(&scene, kind, recorders, accuracy, &mut |_| {}).unwrap();
         let apart_m = (trace.rows.iter().zip(&fine.rows))
             .map(|(a, b)| (a.plant.position_m - b.plant.position_m).norm())
             .fold(0.0, f64::max);

@@ -1,7 +1,7 @@
 //! Records of random events, in closed loops with faults: written down, read and replayed.
 
 use firmware_bench::record::file::RecordFile;
-use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
+use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
 use firmware_bench::run::trace::{Recorder, TraceRow};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::run_all;
@@ -115,12 +115,12 @@ fn records_of_rotors_replay_to_the_bit() {
             planes: vec![&mut first, &mut second],
             axis: None,
         };
-        let rigour = Rigour::default();
+        let accuracy = Accuracy::default();
         let ran = record(
             &scene,
             PolicyKind::Supervisor,
             recorders,
-            rigour,
+            accuracy,
             &mut |_| {},
         );
         let planes = ran.unwrap_or_default();

@@ -2,7 +2,7 @@
 //! it is called.
 
 use firmware_bench::device::whole_levitation::WholeLevitationParams;
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -228,8 +228,8 @@ fn seals_are_touched(plant: &RotorPlant, hardest: Hardest) {
 
 /// Figures of the planes under levitation alone.
 fn levitated(scene: &Scene) -> Vec<Figures> {
-    let (nobody, rigour) = (Recorders::default(), Rigour::default());
-    let ended = record(scene, PolicyKind::Levitation, nobody, rigour, &mut |_| {}).unwrap();
+    let (nobody, accuracy) = (Recorders::default(), Accuracy::default());
+    let ended = record(scene, PolicyKind::Levitation, nobody, accuracy, &mut |_| {}).unwrap();
     ended.into_iter().map(|(figures, _)| figures).collect()
 }
 

@@ -5,8 +5,8 @@ use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::supervision::Supervision;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::suggest::suggested;
-use firmware_studies::machines::drawn::Machine;
 use firmware_studies::machines::plants::plants;
+use firmware_studies::machines::random::RandomMachine;
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
 use firmware_studies::overloads::contenders::{Contender, Task};
@@ -21,7 +21,7 @@ use supervisor::Mode;
 fn what_levitation_carries_it_is_given() {
     let (mut carried, mut touched) = (0, 0);
     for number in 0..12 {
-        let unseen = Machine::unseen(number).unwrap();
+        let unseen = RandomMachine::unseen(number).unwrap();
         if unseen.lateness() > 0.8 {
             continue;
         }

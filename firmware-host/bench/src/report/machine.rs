@@ -1,12 +1,12 @@
 //! The report on a whole rotor: its ends side by side, its axis over time and from the side, then each plane.
 
 use super::document::{Document, Times};
-use super::drawn::Drawn;
 use super::headline::{Concluded, headline};
 use super::html_page::Head;
 use super::markup::Markup;
 use super::panels::{PanelRow, Shown};
 use super::quantities::{BENDING_ENERGY, SLOPE, bending};
+use super::rendered::Rendered;
 use super::summary::{Fact, SceneSummary, summary};
 use super::track::Track;
 use super::{
@@ -109,11 +109,11 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
     });
     tracks.push_axes(&mut document, scene, &times)?;
     let sides = axes.map(|(run, axis)| {
-        let drawn = Drawn::of_chart(&from_the_side(&scene.machine, axis))?;
+        let drawn = Rendered::of_chart(&from_the_side(&scene.machine, axis))?;
         let caption = Markup::written(format!("<b>{}</b>", Markup::text(&run.name).as_html()));
-        Ok(Drawn { caption, ..drawn })
+        Ok(Rendered { caption, ..drawn })
     });
-    let sides: Vec<Drawn> = sides.collect::<Result<_, PlotError>>()?;
+    let sides: Vec<Rendered> = sides.collect::<Result<_, PlotError>>()?;
     (document.page).section("Axis from the side, at equal times", |page| {
         page.figures(&sides);
     });

@@ -1,7 +1,7 @@
 //! The figures of a run, a row each: its key in JSON and in code, where it comes from, how tables head it and show it.
 //! A new figure is a new row here; verdict, JSON, terminal, report and studies take it from there.
 
-use crate::run::columns::{Cell, Column, InColumns, below, columns_of, in_columns};
+use crate::run::columns::{Cell, Column, Columnar, below, columnar, columns_of};
 use crate::run::judge::Judge;
 use crate::run::outcome::Outcome;
 use crate::run::rig::Rig;
@@ -88,7 +88,7 @@ macro_rules! figures {
             }
         }
 
-        in_columns!($name { $($key),* });
+        columnar!($name { $($key),* });
     };
 }
 
@@ -176,7 +176,7 @@ pub struct BearingFigures {
     pub clearance_m: f64,
 }
 
-in_columns!(BearingFigures {
+columnar!(BearingFigures {
     heat_j,
     temperature_rise_k,
     clearance_m

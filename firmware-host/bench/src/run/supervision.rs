@@ -1,6 +1,6 @@
 //! What the supervisor did in a run, in figures.
 
-use crate::run::columns::{Cell, Column, InColumns, below, columns_of, in_columns};
+use crate::run::columns::{Cell, Column, Columnar, below, columnar, columns_of};
 use crate::run::trace::{ReadOut, Recorder, SupervisorTrace, Trace, TraceRow};
 use serde::Serialize;
 use supervisor::{Events, Mode};
@@ -49,11 +49,11 @@ pub struct Account {
     pub flight_record_crc: Option<u32>,
 }
 
-in_columns!(Supervision {
+columnar!(Supervision {
     engagements, first_engaged_s, engaged_s, longest_engagement_s, handed_back, sensor_faults, expected_severity_max;
     .. account
 });
-in_columns!(Account {
+columnar!(Account {
     landings,
     nuisance_engagements,
     impact_speed_max_m_s,

@@ -1,7 +1,7 @@
 //! A run's own estimate of its global error: the closed loop once more at a tighter tolerance, and
 //! once more by another method.
 
-use crate::run::closed_loop::{Recorders, Rigour, RunError, record};
+use crate::run::closed_loop::{Accuracy, Recorders, RunError, record};
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::trace::{Recorder, TraceRow};
@@ -161,8 +161,8 @@ impl<'a> Comparison<'a> {
     }
 }
 
-fn rigour(scene: &Scene) -> Rigour {
-    Rigour {
+fn accuracy(scene: &Scene) -> Accuracy {
+    Accuracy {
         parts: FINER_PARTS,
         steps: STEPS + STEPS_PER_SAMPLE * scene.samples().count(),
     }
@@ -191,7 +191,7 @@ pub fn check(
         .map(|(plane, run)| Comparison::new(run, scene.clearance_m(plane)))
         .collect();
     let recorders = Recorders::of_planes(&mut comparisons);
-    let ended = record(scene, kind, recorders, rigour(scene), on_tick);
+    let ended = record(scene, kind, recorders, accuracy(scene), on_tick);
     let ended = ended.map_err(untrusted(scene))?;
     Ok((comparisons.into_iter().zip(&ended))
         .map(|(comparison, (figures, _))| comparison.ended(figures, scene.rtol))

@@ -37,7 +37,7 @@ pub(crate) fn scene_of(plan: &Plan, run: u64) -> Result<String, SweepError> {
     let mut document: DocumentMut = text
         .parse()
         .map_err(|error: toml_edit::TomlError| refused(error.to_string()))?;
-    let drawn = plan.drawn(run);
+    let point = plan.point(run);
     let policies = plan
         .policies()
         .iter()
@@ -49,9 +49,9 @@ pub(crate) fn scene_of(plan: &Plan, run: u64) -> Result<String, SweepError> {
         .map(|variation| variation.key.as_str());
     let mut set: Vec<(&str, Value)> = vec![
         ("run.policies", Value::Array(policies.collect())),
-        ("run.seed", Value::Integer(drawn.seed)),
+        ("run.seed", Value::Integer(point.seed)),
     ];
-    set.extend(keys.clone().zip(drawn.values.iter().cloned()));
+    set.extend(keys.clone().zip(point.values.iter().cloned()));
     for (key, value) in set {
         // The plan has set the same in the same file.
         place(&mut document, key, edited(&value));

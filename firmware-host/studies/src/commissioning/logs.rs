@@ -8,7 +8,7 @@ use crate::machines::rotors::{Class, RotorCase};
 use firmware_bench::commission::log::Log;
 use firmware_bench::commission::two_planes::TwoPlanes;
 use firmware_bench::commission::{Commissioned, Found};
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::trace::{Recorder, TraceRow};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -42,8 +42,8 @@ impl Recorder for Logged {
 fn logged<const PLANES: usize>(scene: &Scene) -> Result<[Log; PLANES], String> {
     let mut rows = [(); PLANES].map(|()| Logged::default());
     let recorders = Recorders::of_planes(&mut rows);
-    let (kind, rigour) = (PolicyKind::Supervisor, Rigour::default());
-    record(scene, kind, recorders, rigour, &mut |_| {}).map_err(|error| error.to_string())?;
+    let (kind, accuracy) = (PolicyKind::Supervisor, Accuracy::default());
+    record(scene, kind, recorders, accuracy, &mut |_| {}).map_err(|error| error.to_string())?;
     let period_s = 1.0 / scene.sample_rate_hz;
     Ok(rows.map(|Logged(log)| Log { period_s, ..log }))
 }

@@ -3,7 +3,7 @@
 use super::{BEFORE_S, Change, WINDOW, WINDOWS};
 use crate::campaign::{Progress, run_all};
 use crate::machines::rotors::{Class, RotorCase};
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::trace::{Recorder, TraceRow};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -40,7 +40,7 @@ fn rotor(
         &scene,
         PolicyKind::Supervisor,
         recorders,
-        Rigour::default(),
+        Accuracy::default(),
         &mut |_| {},
     );
     let ended = ended.map_err(|error| error.to_string())?;

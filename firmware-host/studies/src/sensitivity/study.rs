@@ -2,8 +2,8 @@
 
 use super::{configured_right, misjudged};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
-use crate::machines::drawn::Machine;
 use crate::machines::plants::plants;
+use crate::machines::random::RandomMachine;
 use crate::machines::tuned_gains::stored;
 use crate::overloads::contenders::Contender;
 use crate::overloads::results::ResultRow;
@@ -143,7 +143,7 @@ pub fn of_the_catalogue(name: &str) -> Result<Vec<Trial>, StudyError> {
 
 fn of_unseen_machines(count: u64) -> Result<Vec<Trial>, StudyError> {
     let machines = (0..count)
-        .map(Machine::unseen)
+        .map(RandomMachine::unseen)
         .collect::<Result<Vec<_>, _>>()?;
     Ok(machines
         .iter()

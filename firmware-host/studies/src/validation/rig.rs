@@ -7,7 +7,7 @@ use super::fit::fitted;
 use super::record::Record;
 use crate::campaign::StudyError;
 use firmware_bench::device::loads::{Disturbance, Shape};
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::trace::{AxisRow, Recorder};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -285,8 +285,8 @@ impl Rig {
             planes: Vec::new(),
             axis: Some(&mut tilt),
         };
-        let (passive, rigour) = (PolicyKind::Passive, Rigour::default());
-        let ended = record(&scene, passive, recorders, rigour, &mut |_| {})?;
+        let (passive, accuracy) = (PolicyKind::Passive, Accuracy::default());
+        let ended = record(&scene, passive, recorders, accuracy, &mut |_| {})?;
         let (figures, _) = ended.first().ok_or("a scene without planes")?;
         let Tilts(mut tilt) = tilt;
         tilt.truncate(samples);

@@ -86,7 +86,7 @@ pub(crate) fn rotor(params: &MachineParams, start: &MachineStart, options: Optio
 
 /// Carries a rotor on without forces from outside.
 #[track_caller]
-pub(crate) fn carry_on(rotor: &mut Machine, t_s: f64) {
+pub(crate) fn advance(rotor: &mut Machine, t_s: f64) {
     let nothing = MachineInputs::default();
     rotor.advance(t_s, &nothing, &mut |_, _| {}).unwrap();
 }
@@ -94,7 +94,7 @@ pub(crate) fn carry_on(rotor: &mut Machine, t_s: f64) {
 /// The same in samples, up to a time.
 pub(crate) fn carry_sampled(rotor: &mut Machine, end_s: f64, samples: u32) {
     for i in 1..=samples {
-        carry_on(rotor, end_s * f64::from(i) / f64::from(samples));
+        advance(rotor, end_s * f64::from(i) / f64::from(samples));
     }
 }
 

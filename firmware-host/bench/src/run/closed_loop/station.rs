@@ -63,7 +63,7 @@ impl<'a> Station<'a> {
     }
 
     /// What firmware knows at a tick.
-    pub(super) fn see(&mut self, t_s: f64, sensed_m: V2, now: &Snapshot) -> Seen {
+    pub(super) fn read_sensor(&mut self, t_s: f64, sensed_m: V2, now: &Snapshot) -> Seen {
         let [of_sensor, of_magnet] = self.axes;
         let sensed_m = of_sensor.seen(sensed_m);
         let reading = (self.sensor).read(t_s, sensed_m, now.spin_rad_s);

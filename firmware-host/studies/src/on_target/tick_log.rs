@@ -55,22 +55,22 @@ impl Piece {
 }
 
 /// What passes the border of a supervisor, written down.
-pub type Tape = Rc<RefCell<Vec<Tick>>>;
+pub type TickLog = Rc<RefCell<Vec<Tick>>>;
 
-/// A supervisor of floats with its tape.
+/// A supervisor of floats with its log.
 #[derive(Debug)]
 pub struct Recording {
     /// Whoever supervises.
     pub supervisor: Box<dyn Supervise>,
     /// What it was told and what it commanded.
-    pub tape: Tape,
+    pub log: TickLog,
 }
 
 impl Supervise for Recording {
     fn tick(&mut self, sample: &Sample) -> Command {
         let command = self.supervisor.tick(sample);
         let tick = Tick::new(&sample_bits(sample), &command_bits(&command));
-        self.tape.borrow_mut().push(tick);
+        self.log.borrow_mut().push(tick);
         command
     }
 }
