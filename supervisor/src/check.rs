@@ -187,7 +187,7 @@ impl Check {
             Finding::NotYet
         };
         let value = 0.0;
-        cell.put(Checked { finding, value });
+        cell.store(Checked { finding, value });
     }
 
     /// What firmware should add to the force that it asks for next \[caps\].
@@ -371,7 +371,7 @@ impl Progress {
             }
             return;
         } else {
-            self.take(position, spin, seen);
+            self.accumulate(position, spin, seen);
         }
         self.left = self.left.saturating_sub(1);
         if self.left == 0
@@ -383,7 +383,7 @@ impl Progress {
 
     fn conclude(&mut self, checked: Checked, cell: &CheckedCell) {
         self.admit(checked.finding);
-        cell.put(checked);
+        cell.store(checked);
     }
 
     /// How far the rotor may go from where the window began.
@@ -474,7 +474,7 @@ impl Progress {
     }
 
     /// A tick of the window.
-    fn take(&mut self, position: Vec2<f32>, spin: f32, seen: &Seen) {
+    fn accumulate(&mut self, position: Vec2<f32>, spin: f32, seen: &Seen) {
         let weight = self.window() * self.window();
         let away = position - self.from;
         match self.stage {

@@ -213,7 +213,7 @@ impl<S: Scalar> Plane<S> {
     #[inline(never)]
     pub(crate) fn publish<const N: usize>(&self, shared: &Shared<N>, with_units: bool) {
         let units = with_units.then(|| Units::of(&self.coeffs));
-        shared.latest.put(&self.tally(), units.as_ref());
+        shared.latest.publish(&self.tally(), units.as_ref());
     }
 
     /// After a tick: the mode at once, all else when it is its turn. A tick with an event has enough to do: it is the next one
@@ -225,7 +225,7 @@ impl<S: Scalar> Plane<S> {
         mode: Mode,
         events: Events,
     ) {
-        shared.latest.put_mode(mode);
+        shared.latest.publish_mode(mode);
         if self.recorder.is_published_now(events) {
             self.publish(shared, false);
         }
@@ -302,7 +302,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// What has happened since the supervisor was made, in SI.
     pub fn report(&self) -> Report {
         let plane = &self.plane;
-        let checked = self.shared.checked.get();
+        let checked = self.shared.checked.load();
         plane.tally().report(&Units::of(&plane.coeffs), checked)
     }
 

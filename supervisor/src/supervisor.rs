@@ -289,7 +289,7 @@ impl<S: Scalar, const RECORD: usize> Published<'_, S, RECORD> {
     /// it from the tick after it on. `None` where ticks came in between eight times, which takes
     /// some hundred instructions of this call each; and, asked from what has interrupted a tick, always.
     pub fn report(&self) -> Option<Report> {
-        self.shared.latest.report::<S>(self.shared.checked.get())
+        self.shared.latest.report::<S>(self.shared.checked.load())
     }
 }
 

@@ -179,7 +179,7 @@ impl Machine {
         if !(t_end_s.is_finite() && finite(&inputs.commands_n) && finite(&inputs.loads_n)) {
             return Err(PlantError::NotFinite { t_s });
         }
-        self.take(inputs);
+        self.apply(inputs);
         let before = self.modes();
         self.warm();
         self.tell(before, on_change);
@@ -243,7 +243,7 @@ impl Machine {
     }
 
     /// Takes inputs over, and what they push on the coordinates.
-    fn take(&mut self, inputs: &MachineInputs) {
+    fn apply(&mut self, inputs: &MachineInputs) {
         self.forces.copy_from_slice(&self.system.body.gravity);
         for (m, command_n) in inputs.commands_n.iter().enumerate() {
             let (cap, size) = (self.system.caps_n[m], command_n.norm());

@@ -403,7 +403,7 @@ impl MachineSeries {
         let Self { rows, parts } = self;
         parts.begin(step, y);
         of_rows!(rows, rows => {
-            rows.put(0, &y.position, &y.velocity);
+            rows.set(0, &y.position, &y.velocity);
             parts.fill(rows, step, highest, enough);
         });
         for (p, plane) in parts.planes.iter_mut().enumerate() {

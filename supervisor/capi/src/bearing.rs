@@ -41,7 +41,7 @@ pub unsafe extern "C" fn amb_config_for_bearing(
         let place = unsafe { values_place(values, count) }?;
         let config = Config::for_bearing(&bearing.into());
         (config.validate()).map_err(|error| halves::code_of(&error))?;
-        place.put([config.values()]);
+        place.write([config.values()]);
         Ok(())
     });
     Code::from_result(done)
@@ -71,7 +71,7 @@ pub unsafe extern "C" fn amb_config_for_rotor(
         let configs = Config::for_rotor(&shaft, &bearings.map(Bearing::from));
         let (_, configs) =
             RotorCore::new(&shaft, &configs).map_err(|error| halves::code_of_shaft(&error))?;
-        place.put(configs.map(|config| config.values()));
+        place.write(configs.map(|config| config.values()));
         Ok(())
     });
     Code::from_result(done)

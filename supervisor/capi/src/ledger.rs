@@ -82,7 +82,7 @@ pub unsafe extern "C" fn amb_ledger_new(
 ) -> Code {
     // SAFETY: the caller's promise.
     let place = unsafe { Place::new(Argument::Ledger, ledger) };
-    Code::from_result(place.map(|place| place.put(Ledger::new(bearing, severity_allowed).into())))
+    Code::from_result(place.map(|place| place.write(Ledger::new(bearing, severity_allowed).into())))
 }
 
 /// From what was written down.
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn amb_ledger_read(
     let done = bytes.and_then(|bytes| {
         // SAFETY: the caller's promise.
         let place = unsafe { Place::new(Argument::Ledger, ledger) }?;
-        place.put(Ledger::from_bytes(&bytes)?.into());
+        place.write(Ledger::from_bytes(&bytes)?.into());
         Ok(())
     });
     Code::from_result(done)
@@ -125,7 +125,7 @@ pub unsafe extern "C" fn amb_ledger_newer(
         // SAFETY: the caller's promise.
         let place = unsafe { Place::new(Argument::Ledger, ledger) }?;
         let (newer, other) = Ledger::newer([&first, &second])?;
-        place.put(newer.into());
+        place.write(newer.into());
         other.map_or(Ok(()), |_| Err(Code::ONE_COPY))
     });
     Code::from_result(done)
@@ -145,7 +145,7 @@ unsafe fn take_in(
     let place = unsafe { Place::new(Argument::Ledger, ledger) }?;
     match record.is_some_and(|record| kept.take_in(&record)) {
         true => {
-            place.put(kept.into());
+            place.write(kept.into());
             Ok(())
         }
         false => Err(Code::NOTHING),
@@ -210,7 +210,7 @@ pub unsafe extern "C" fn amb_ledger_write(
         if count != LEDGER_BYTES {
             return Err(Code::ERROR_LEDGER_LENGTH);
         }
-        place.put(Ledger::from(ledger).to_bytes());
+        place.write(Ledger::from(ledger).to_bytes());
         Ok(())
     });
     Code::from_result(done)
@@ -233,7 +233,7 @@ pub unsafe extern "C" fn amb_ledger_landings_left(
         // SAFETY: the caller's promise.
         let place = unsafe { Place::new(Argument::Result, landings) }?;
         let left = Ledger::from(ledger).landings_left(severity);
-        place.put(left.ok_or(Code::NOTHING)?);
+        place.write(left.ok_or(Code::NOTHING)?);
         Ok(())
     });
     Code::from_result(done)

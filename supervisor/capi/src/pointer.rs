@@ -108,7 +108,7 @@ impl<T: Copy> Place<T> {
         Ok(Self(pointer))
     }
 
-    pub(crate) fn put(&self, value: T) {
+    pub(crate) fn write(&self, value: T) {
         // SAFETY: checked, and promised to be memory for a T, in `new`.
         unsafe { self.0.write(value) }
     }

@@ -202,7 +202,7 @@ impl<const N: usize> RecordBuffer<N> {
     }
 
     /// By the tick: goes on recording.
-    pub(crate) fn take(&self) {
+    pub(crate) fn resume(&self) {
         self.owner.store(RECORDS, Ordering::Relaxed);
     }
 }

@@ -442,7 +442,7 @@ impl<S: Scalar> Recorder<S> {
             self.keeps = false;
             self.coast_down = false;
             self.track.clear();
-            buffer.take();
+            buffer.resume();
         }
     }
 
@@ -455,7 +455,7 @@ impl<S: Scalar> Recorder<S> {
     pub(crate) fn restart<const N: usize>(&mut self, buffer: &RecordBuffer<N>) {
         let config = Config::from_values(self.config);
         *self = Self::new::<N>(&config, self.plane);
-        buffer.take();
+        buffer.resume();
     }
 
     /// What comes now is of another event.

@@ -249,7 +249,7 @@ impl External {
         }
         let asked = match &mut self.asked {
             Asked::Process(process, bytes) => {
-                question.put(bytes);
+                question.encode(bytes);
                 process.asked(bytes)
             }
             Asked::Caller(controller) => controller.step(question),

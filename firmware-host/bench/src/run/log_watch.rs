@@ -174,7 +174,7 @@ impl Watcher {
     }
 
     /// Takes what has frozen.
-    fn take(&mut self, stamp: &Stamp, into: &mut Vec<u8>) {
+    fn drain(&mut self, stamp: &Stamp, into: &mut Vec<u8>) {
         let mut write = |record: &Record<'_, f32, RECORD>| into.extend(written(record, stamp));
         match self {
             Self::Plane(plane) => {
@@ -277,7 +277,7 @@ fn watched(
             _ => {}
         }
         engaged = now;
-        watcher.take(&stamp(times[row] - times[0], *sequence), &mut records);
+        watcher.drain(&stamp(times[row] - times[0], *sequence), &mut records);
     }
     // A record that is still open goes on for as long as it must, with a bearing that is off and nothing read.
     let (end_s, taken) = (period_s * ticks.len() as f64, records.len());
@@ -289,7 +289,7 @@ fn watched(
         }
         watcher.tick(&last);
         let sequence = last.first().map_or(0, |sample| sample.sequence);
-        watcher.take(&stamp(end_s, sequence), &mut records);
+        watcher.drain(&stamp(end_s, sequence), &mut records);
         if records.len() > taken {
             break;
         }

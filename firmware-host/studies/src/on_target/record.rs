@@ -8,7 +8,7 @@ use super::tick_log::Piece;
 use crate::overloads::plan::CatalogueError;
 use firmware_image::under_test::{Fixed, Float, UnderTest};
 use firmware_image::wire::{
-    HEADER_BYTES, Hash, Header, SEGMENT_BYTES, Segment, put_header, put_segment, sample_of,
+    HEADER_BYTES, Hash, Header, SEGMENT_BYTES, Segment, encode_header, encode_segment, sample_of,
 };
 use std::io::{self, Write};
 
@@ -104,7 +104,7 @@ impl Stream {
         let mut to = io::BufWriter::new(to);
         let mut header = [0; HEADER_BYTES];
         let segments = self.pieces.len() as u32;
-        put_header(Header { segments }, &mut header);
+        encode_header(Header { segments }, &mut header);
         to.write_all(&header)?;
         let mut segment = [0; SEGMENT_BYTES];
         for piece in &self.pieces {
@@ -112,7 +112,7 @@ impl Stream {
                 config: piece.config,
                 ticks: piece.ticks.len() as u32,
             };
-            put_segment(&begin, &mut segment);
+            encode_segment(&begin, &mut segment);
             to.write_all(&segment)?;
             for tick in &piece.ticks {
                 to.write_all(&tick.sample)?;

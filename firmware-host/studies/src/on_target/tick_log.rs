@@ -3,8 +3,8 @@
 use super::coverage::Coverage;
 use firmware_bench::run::controller::Supervise;
 use firmware_image::wire::{
-    COMMAND_BYTES, CommandBits, SAMPLE_BYTES, SampleBits, command_bits, put_command, put_sample,
-    sample_bits,
+    COMMAND_BYTES, CommandBits, SAMPLE_BYTES, SampleBits, command_bits, encode_command,
+    encode_sample, sample_bits,
 };
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -27,8 +27,8 @@ impl Tick {
             command: [0; COMMAND_BYTES],
             mode: command.mode,
         };
-        put_sample(sample, &mut tick.sample);
-        put_command(command, &mut tick.command);
+        encode_sample(sample, &mut tick.sample);
+        encode_command(command, &mut tick.command);
         tick
     }
 }
