@@ -30,7 +30,7 @@ const BESIDE: [f32; MOST_ROUNDS as usize] = [1.0, 1.13, 0.89, 1.06];
 const LEAST_S: f32 = 0.2;
 const LEAST_TIME: f32 = 63.0;
 /// The stimulus goes with the cube of so many times the window, up to its length; in a window before the others with the eighth power
-/// of the time, so slowly that a force which is told in amperes does not throw the rotor before it is seen to move too far: by so much
+/// of the time, so slowly that a force which is set in amperes does not throw the rotor before it is seen to move too far: by so much
 /// more than so many times what it does of itself \[clearances\]. Then the stimulus is a quarter from there on, so many times at most.
 const STEEP: f32 = 1.5;
 const TOO_FAR: f32 = 0.2;
@@ -159,7 +159,7 @@ impl Check {
         self.0.first().is_none_or(|progress| progress.open)
     }
 
-    /// What a tick is told of a status: until the check has passed it only watches, and a spin that is contradicted is none.
+    /// What a tick sees of a status: until the check has passed it only watches, and a spin that is contradicted is none.
     #[inline]
     pub(crate) fn admitted(&self, status: Status) -> Status {
         self.0

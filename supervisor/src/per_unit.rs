@@ -98,7 +98,7 @@ impl<S: Scalar> Plane<S> {
         (command, seen)
     }
 
-    /// What the other plane of a rotor is told.
+    /// Inputs for the other plane of a rotor.
     #[inline]
     pub(crate) fn plane_state(&self) -> PlaneState<S> {
         let observer = &self.state.observer;
@@ -217,7 +217,7 @@ impl<S: Scalar> Plane<S> {
     }
 
     /// After a tick: the mode at once, all else when it is its turn. A tick with an event has enough to do: it is the next one
-    /// that publishes what came of it.
+    /// that publishes its outcome.
     #[inline]
     pub(crate) fn publish_in_turn<const N: usize>(
         &mut self,

@@ -31,7 +31,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         Ok(Self::from_valid(config, [0, 1]))
     }
 
-    /// One for a plane of a rotor, 0 or 1, of which [`crate::RotorCore::new`] has told the configuration.
+    /// One for a plane of a rotor, 0 or 1, of which [`crate::RotorCore::new`] has given the configuration.
     ///
     /// # Errors
     /// The first parameter of `config` that is outside its range.

@@ -13,7 +13,7 @@ use supervisor::{
 };
 use test_support::in_numbers;
 
-/// A core of any number that is told SI and answers SI, as firmware without floating point would around it.
+/// A core of any number that takes SI and answers SI, as firmware without floating point would around it.
 #[derive(Debug)]
 pub struct Behind<S: Scalar> {
     scaling: Scaling,
@@ -40,7 +40,7 @@ impl<S: Scalar> Supervise for Behind<S> {
     }
 }
 
-/// What a supervisor was told in a closed loop.
+/// Inputs of a supervisor in a closed loop.
 #[derive(Debug, Clone)]
 pub struct Stream {
     /// Plant, control rate and case.

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use supervisor::{Command, Config, ConfigError, Sample, Supervisor};
 
-/// What a supervisor was told, and what it commanded.
+/// Inputs of a supervisor, and what it commanded.
 pub type SampleLog = Rc<RefCell<Vec<(Sample, Command)>>>;
 
 #[derive(Debug)]

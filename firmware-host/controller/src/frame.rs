@@ -9,7 +9,7 @@ const MOST: u32 = 1 << 16;
 /// Longest text that is believed.
 const LONGEST_TEXT: usize = 1 << 20;
 
-/// What a controller is told before the first sample.
+/// What a controller is given before the first sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
     /// From one sample to the next \[s\].

@@ -2,7 +2,7 @@
 
 use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::load;
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_bench::advise::{self, Advice, Language, OutOfRange, RotorAdvice, Warning};
 use firmware_bench::modes::Coupling;
 use firmware_bench::report::campbell;
@@ -268,7 +268,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
             say_warnings(&advice.warnings);
             print(&listing)
         }
-        None => tell(&advise::text(&advice)),
+        None => print_wrapped(&advise::text(&advice)),
     }
 }
 
@@ -383,7 +383,7 @@ fn of_machine(
     } else {
         let texts: Vec<String> = all.iter().map(advise::text).collect();
         let rotor = rotor.map_or_else(String::new, |rotor| rotor.text() + "\n");
-        tell(&format!(
+        print_wrapped(&format!(
             "{title}\n{}\n\n{rotor}{}",
             campbell::coupling(&coupling),
             texts.join("\n")

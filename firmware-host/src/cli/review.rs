@@ -8,7 +8,7 @@ mod tables;
 mod text;
 
 use crate::cli::error::{CommandError, pretty, print};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use again::Again;
 use firmware_bench::log_file::{LogError, LogFile, Renamed};
 use firmware_bench::record::Contact;
@@ -351,7 +351,7 @@ fn of_sections(asked: &Asked<'_>, file: &RecordFile) -> Result<(), CommandError>
             .map(|(i, of)| text(of, args.scene.is_some(), of_event(&bearings, i, &events)));
         let log = asked.log.as_ref().map(|log| log.sentences() + "\n");
         let texts: Vec<String> = log.into_iter().chain(damaged).chain(text).collect();
-        tell(&texts.join("\n"))?;
+        print_wrapped(&texts.join("\n"))?;
     }
     match error {
         None => Ok(()),

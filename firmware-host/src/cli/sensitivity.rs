@@ -3,7 +3,7 @@
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::table::shown;
 use firmware_bench::run::figures::{Figure, Figures, Place};
@@ -64,7 +64,7 @@ pub fn execute(args: &SensitivityArgs) -> Result<(), CommandError> {
     }
     let rows = rows(&scene, args)?;
     if !args.json {
-        return tell(&text(&scene, &rows));
+        return print_wrapped(&text(&scene, &rows));
     }
     let value = serde_json::json!({
         "scene": scene.title,

@@ -197,7 +197,7 @@ fn inverse(&[[a, b], [c, d]]: &[[f32; 2]; 2]) -> [[f32; 2]; 2] {
     [[d * by, -b * by], [-c * by, a * by]]
 }
 
-/// A supervisor that is told of its machine as firmware with a mistake tells it.
+/// A supervisor that sees its machine through firmware with a mistake.
 #[derive(Debug)]
 struct Mistaken {
     supervisor: Supervisor,
@@ -213,19 +213,19 @@ impl Supervise for Mistaken {
             spin,
             ..
         } = &self.mistake;
-        // What it asks to be added comes to the force as it is told.
+        // What it asks to be added comes to the force as it is reported.
         let mut levitation_n = mapped(force, sample.levitation_n);
         for (sum, more) in levitation_n.iter_mut().zip(self.supervisor.stimulus_n()) {
             *sum += more;
         }
-        let told = Sample {
+        let seen = Sample {
             position_m: mapped(position, sample.position_m),
             levitation_n,
             applied_n: mapped(force, sample.applied_n),
             spin_rad_s: spin * sample.spin_rad_s,
             ..*sample
         };
-        let command = self.supervisor.tick(&told);
+        let command = self.supervisor.tick(&seen);
         let checked = self.supervisor.report().checked;
         if self.found.get().finding == Finding::NotYet {
             self.found.set(checked);

@@ -231,7 +231,7 @@ pub fn configured_right(scene: &Scene) -> Result<Scene, ConfigError> {
     Ok(scene)
 }
 
-/// What came of a run.
+/// Outcome of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// What it was configured with, or that there was none.

@@ -70,10 +70,10 @@ fn cost_over_degrees_of_freedom() {
             speed(&plain, Method::Series, Mode::Roll),
             speed(&plain, Method::Collocation, Mode::Roll),
         ];
-        let told = row.map(|times| {
+        let cells = row.map(|times| {
             let us = |times| format!("{:.1} µs, {times:.0} ×", 1e6 * PERIOD_S / times);
             times.map_or("–".to_owned(), us)
         });
-        println!("{}: {}", 4 + 2 * modes, told.join(" | "));
+        println!("{}: {}", 4 + 2 * modes, cells.join(" | "));
     }
 }

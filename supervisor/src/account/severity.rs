@@ -177,7 +177,7 @@ impl<S: Scalar> Severity<S> {
             self.beyond_ticks = 0;
         }
         // The index never falls: what it asks for it asks for once, unless its limit is raised. A request that is
-        // out already does not keep it from being told later.
+        // out already does not keep it from being reported later.
         let passed = self.index.value() > S::ONE;
         self.index_reported = self.index_reported && passed;
         let by_index = passed && !self.index_reported;

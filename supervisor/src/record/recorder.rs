@@ -1,4 +1,4 @@
-//! Flight recorder, the tick's side of it: writes what the ticks of an event were told and what came of it, from a state on from
+//! Flight recorder, the tick's side of it: writes inputs and outcome of the ticks of an event, from a state on from
 //! which they can be replayed; a slow track that reaches to its end; and events for the background task.
 
 use crate::account::severity::{Fastest, Severity};
@@ -220,7 +220,7 @@ impl<S: Scalar> Recorder<S> {
         matches!(self.progress, Progress::Armed | Progress::Triggered(1..))
     }
 
-    /// Takes in what a tick is told. Before the tick, which needs the registers for something else then.
+    /// Takes in a tick's inputs. Before the tick, which needs the registers for something else then.
     #[inline]
     pub(crate) fn push_sample<const N: usize>(
         &mut self,

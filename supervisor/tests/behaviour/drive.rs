@@ -1,4 +1,4 @@
-//! A drive that does not do what it is told, where its force is measured: what is noticed, what is not, and what follows.
+//! A drive that does not do what is commanded, where its force is measured: what is noticed, what is not, and what follows.
 
 use proptest::prelude::*;
 use supervisor::{Command, Config, Events, Mode, Sample, Status, Supervisor};
@@ -169,7 +169,7 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
                 assert!(zero.iter().filter(|zero| **zero).count() <= 1, "{name}");
                 continue;
             }
-            // A turn of the whirl is 63 ticks, and an axis can only be told while it delivers against a command.
+            // A turn of the whirl is 63 ticks, and an axis can only be judged while it delivers against a command.
             let first = zero.iter().position(|zero| *zero);
             assert!(first.is_some_and(|i| i <= 70), "{name}: {first:?}");
         }

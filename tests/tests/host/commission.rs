@@ -283,7 +283,7 @@ fn as_csv(trace: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     (names, lines.map(cells).collect())
 }
 
-/// Mass and inertias of a rotor in two planes, from two logs and from one; what is told wrong is contradicted, what costs most first.
+/// Mass and inertias of a rotor in two planes, from two logs and from one; what is configured wrong is contradicted, what costs most first.
 #[test]
 fn a_rotor_in_two_planes_is_found() {
     let (folder, [far, wheel], scene) = both_ends();

@@ -374,7 +374,7 @@ fn sections_hold_a_whole_rotor_as_gains_of_its_planes_do() {
     refused(&both, "plane[1].biquads: does not go with [state_space]");
 }
 
-/// What the C controller is told, checked by itself.
+/// What the C controller is given, checked by itself.
 const ASKS_IN_C: &str = "#include \"amb_controller.h\"
 AMB_CONTROLLER_DEFINE_ABI
 static uint32_t n;

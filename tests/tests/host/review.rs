@@ -61,7 +61,7 @@ fn what_was_written_is_read_and_replays() {
             (narrative.outcome, narrative.touches, narrative.landings),
             ("levitated", Some(1), 1)
         );
-        // A tick that was told something else is found.
+        // A tick with other inputs is found.
         let mut wrong = file.clone();
         let entry = wrong.records[0].entries.get_mut(&40).unwrap();
         entry.position[0] ^= 1 << 16;

@@ -299,7 +299,7 @@ fn a_contradicted_outcome_is_said_and_ends_with_exit_code_1() {
     assert!(report.contains("OTHER than the run"));
 }
 
-/// What `auto` came to is in the verdict.
+/// What `auto` chose is in the verdict.
 #[test]
 fn the_method_that_ran_is_named() {
     let folder = TempDir::new().unwrap();
@@ -380,7 +380,7 @@ fn control_rates_beyond_the_supervisors_are_warned_of() {
     }
 }
 
-/// A levitation loop that is unstable or badly damped is no baseline, and the reader is told; one that swings out, or damps
+/// A levitation loop that is unstable or badly damped is no baseline, and the reader is warned; one that swings out, or damps
 /// well, shows who is right.
 #[test]
 fn a_levitation_loop_that_hardly_holds_is_warned_of() {

@@ -117,8 +117,8 @@ fn a_coarse_converter_is_no_stuck_sensor() {
                 .unwrap();
             let run = (acting, Contender::Supervisor.name());
             let (_, trace) = run_policy(&scene, run, Keep::Trace, &mut |_| {}).unwrap();
-            let told = Supervision::of(&trace).unwrap();
-            assert_eq!(told.sensor_faults, 0, "{} at {rate_hz} Hz", plant.name);
+            let seen = Supervision::of(&trace).unwrap();
+            assert_eq!(seen.sensor_faults, 0, "{} at {rate_hz} Hz", plant.name);
         }
     }
 }

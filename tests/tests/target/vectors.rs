@@ -92,8 +92,8 @@ fn right(folder: &std::path::Path, number: &str, port: fn(&Config) -> Port) -> (
         for (piece, row) in ticks.by_ref().take(words_of[0] as usize).map(words) {
             assert_eq!(piece, i);
             // A record of another length freezes at another tick.
-            let told = row[2..9].try_into().unwrap();
-            let mut commanded = tick(row[0], Status::from_bits_retain(row[1]), told);
+            let inputs = row[2..9].try_into().unwrap();
+            let mut commanded = tick(row[0], Status::from_bits_retain(row[1]), inputs);
             let mut expected: [u32; 9] = row[9..].try_into().unwrap();
             for events in [&mut commanded[7], &mut expected[7]] {
                 *events &= !supervisor::Events::RECORD_FROZEN.bits();

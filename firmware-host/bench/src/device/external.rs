@@ -95,7 +95,7 @@ impl PartialEq for Caller {
     }
 }
 
-/// Which controller, and what it is told.
+/// Which controller, and its configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExternalParams {
     /// What computes the forces.

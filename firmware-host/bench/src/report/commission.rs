@@ -1,4 +1,4 @@
-//! What a log of a commissioning run told, as a page: how the machine answers and what the fit makes of it, numbers and differences.
+//! What a log of a commissioning run shows, as a page: how the machine answers, the fit, numbers and differences.
 
 use super::PlotError;
 use super::html_page::{Head, HtmlPage};

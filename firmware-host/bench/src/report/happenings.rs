@@ -8,10 +8,10 @@ use crate::report::plot::text::figures;
 use crate::run::supervision::{Happening, Happenings, names};
 use crate::run::verdict::PolicyRun;
 
-/// So many rows of a record are told.
+/// So many rows of a record are listed.
 const MOST: usize = Happenings::MOST;
 
-/// One table for each run with a supervisor, told with the name of its plane, if it has one.
+/// One table for each run with a supervisor, headed by the name of its plane, if it has one.
 pub(super) fn push_tables(page: &mut HtmlPage, runs: &[&PolicyRun], plane: Option<&str>) {
     for run in runs.iter().filter(|run| run.supervision.is_some()) {
         let name = match plane {

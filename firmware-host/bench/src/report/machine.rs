@@ -39,7 +39,7 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
         .collect();
     // What happens to sensors and magnets a seal does not know.
     let bearing = (scene.planes.iter().zip(&summaries)).find(|(plane, _)| !plane.seal);
-    let told = bearing.map_or(&summaries[0], |(_, summary)| summary);
+    let shown = bearing.map_or(&summaries[0], |(_, summary)| summary);
     let whole = &results.runs;
     let concluded: Vec<Concluded<'_>> = (whole.iter().enumerate())
         .map(|(i, run)| {
@@ -57,7 +57,7 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
         headline: headline(&concluded),
         story: scene.story.clone(),
         facts: facts(scene),
-        points: disturbance_lines(&told.disturbances),
+        points: disturbance_lines(&shown.disturbances),
         warnings: warnings(&scene.warnings, results),
     };
     let mut document = Document::begun(&head);
@@ -74,7 +74,7 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
             .all
             .extend(runs.map(|run| Track::of_run(summary, run)));
     }
-    let times = times_of(told, &tracks.all);
+    let times = times_of(shown, &tracks.all);
     for policy in 0..tracks.policies {
         let name = &tracks.all[policy].name;
         let ends = tracks.ends(scene, policy);

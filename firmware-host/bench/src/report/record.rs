@@ -29,7 +29,7 @@ pub struct RecordPart {
 /// What stands above the figures and below them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RecordParts {
-    /// What came of the event.
+    /// Outcome of the event.
     pub above: Vec<RecordPart>,
     /// What it is found out from.
     pub below: Vec<RecordPart>,

@@ -210,7 +210,7 @@ const ASKS: &str = "YES";
 /// … and before outcomes that are not that of the run.
 const OTHER: &str = "OTHER";
 
-/// Every figure that one of the runs has: its title with the unit, and a cell for each run. What came of it first, then what the
+/// Every figure that one of the runs has: its title with the unit, and a cell for each run. The outcome first, then what the
 /// supervisor did.
 pub(super) fn rows(runs: &[&PolicyRun]) -> Vec<(String, Vec<String>)> {
     let mut rows = Vec::new();

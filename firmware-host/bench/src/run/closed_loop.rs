@@ -233,7 +233,7 @@ impl<'a> Recorders<'a> {
     }
 }
 
-/// What one plane came to, and where its rows are recorded what its supervisor leaves behind.
+/// Outcome of one plane, and where its rows are recorded what its supervisor leaves behind.
 pub type PlaneEnded = (Figures, Option<ReadOut>);
 
 /// Runs one policy to the end of the scene, its rows given to recorders as they come. What comes back is of each plane.

@@ -16,7 +16,7 @@ pub trait Controller: core::fmt::Debug {
     /// The force that answers a sample, from what firmware has seen; a reference may look at the truth.
     fn command(&mut self, seen: &Seen, truth: &Snapshot) -> Force;
 
-    /// What the supervisor of a whole rotor is to be told of this plane; its answer comes by [`Self::answered`] before
+    /// What the supervisor of a whole rotor is to be given of this plane; its answer comes by [`Self::answered`] before
     /// [`Self::command`]. `None` of who has nobody to ask.
     fn ask(&mut self, _seen: &Seen) -> Option<Sample> {
         None

@@ -96,7 +96,7 @@ use Digits::{Fixed, Power, Significant};
 use Place::{Everywhere, Full};
 
 figures! {
-    /// What a run came to, in SI units. The same scene gives the same, on every machine.
+    /// Outcome of a run, in SI units. The same scene gives the same, on every machine.
     pub struct Figures from Ended<'_>;
 
     /// How it ended.

@@ -43,7 +43,7 @@ pub struct Account {
     pub severity_index: f64,
     /// Whether it asks for coasting down at the end.
     pub coast_down: bool,
-    /// What the check of its configuration came to.
+    /// Outcome of the check of its configuration.
     pub checked: &'static str,
     /// Checksum of all bytes of the flight record, where one was frozen.
     pub flight_record_crc: Option<u32>,

@@ -17,7 +17,7 @@ impl Scene {
         Some(self.supervised()?.map(|plane| &self.planes[plane]))
     }
 
-    /// The rotor as the supervisor is told it: rigid, in two planes that have a magnet each; `None` of another.
+    /// The rotor as the supervisor is configured: rigid, in two planes that have a magnet each; `None` of another.
     pub fn shaft(&self) -> Option<Shaft> {
         let place = |plane: usize| {
             let magnet = self.machine.magnets.get(self.planes[plane].magnet?)?;

@@ -1,4 +1,4 @@
-//! What a sweep came to, read from its results.
+//! Outcome of a sweep, read from its results.
 
 use crate::run::columns::Kind;
 use crate::run::figures::{Figures, Place};
@@ -16,10 +16,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::File;
 
-/// So many errors are told.
+/// So many errors are listed.
 const ERRORS_TOLD: usize = 3;
 
-/// What a sweep came to.
+/// Outcome of a sweep.
 #[derive(Debug, Clone, Serialize)]
 pub struct Summary {
     /// Title of the scene.
@@ -51,7 +51,7 @@ pub struct Summary {
     pub worst: Vec<WorstRun>,
 }
 
-/// What a policy came to.
+/// Outcome of a policy.
 #[derive(Debug, Clone, Serialize)]
 pub struct PolicySummary {
     /// Its name.

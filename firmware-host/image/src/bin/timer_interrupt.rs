@@ -57,7 +57,7 @@ mod firmware {
         /// The last command came when the next period had begun.
         late: bool,
         hint: IntegratorHint,
-        /// What the amplifiers are told \[N\].
+        /// Commands to the amplifiers \[N\].
         force_n: [f32; 2],
     }
 

@@ -67,7 +67,7 @@ fn tick<U: Ticked>() -> Work<U> {
 #[inline(never)]
 fn turns<U: Ticked>(_: &mut U, _: &U::Sample) -> MaybeUninit<U::Command> {
     let turns = TURNS.load(Ordering::Relaxed);
-    // SAFETY: the loop touches one register, which is told, and the flags; the number is not zero.
+    // SAFETY: the loop touches one register, which is declared, and the flags; the number is not zero.
     unsafe {
         core::arch::asm!(
             "2:",

@@ -34,7 +34,7 @@ impl Machine {
         self.scene.configured_shaft.or_else(|| self.scene.shaft())
     }
 
-    /// The rotor of both planes, as the supervisor is told it.
+    /// The rotor of both planes, as the supervisor is configured.
     ///
     /// # Errors
     /// [`CommandError`] of a scene that has no two planes with a magnet.

@@ -14,7 +14,7 @@ use std::fs::File;
 use std::path::Path;
 use supervisor::PARAMETERS;
 
-/// The scene that was run, and what came of it.
+/// The scene that was run, and its outcome.
 pub(super) struct Again {
     pub(super) scene: Scene,
     pub(super) results: Results,

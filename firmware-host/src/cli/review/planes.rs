@@ -36,7 +36,7 @@ const ROWS: [Row; 11] = [
         known(plane.whirl_share, 100.0)
     }),
     ("severity of the event", |plane| known(plane.severity, 1.0)),
-    ("in all, of its limit", |plane| {
+    ("severity index, of its limit", |plane| {
         format!(
             "{} of {}",
             figures(plane.severity_index),

@@ -171,7 +171,7 @@ pub(super) fn parts(events: &[Examined<'_>], asked: bool) -> RecordParts {
             _ => format!("Event {}: ", i + 1),
         };
         parts.above.push(RecordPart {
-            heading: format!("{of_event}What came of it"),
+            heading: format!("{of_event}Outcome"),
             paragraphs: circumstances(of),
             tables: of_planes(of),
             runs: Vec::new(),

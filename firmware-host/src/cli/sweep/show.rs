@@ -1,4 +1,4 @@
-//! What a sweep came to, as text.
+//! Outcome of a sweep, as text.
 
 use super::Done;
 use firmware_bench::report::lines::{Cell, lined, right};

@@ -24,7 +24,7 @@ pub(super) fn confirms(scene: &mut Scene, change: Option<Change>) {
     scene.duration_s = BEFORE_S + 2.0 * WINDOWS * longest_s;
 }
 
-/// Two planes that confirm their configuration: what each came to.
+/// Two planes that confirm their configuration: the outcome of each.
 fn rotor(
     seed: u64,
     class: Class,

@@ -20,7 +20,7 @@ struct Job<'a> {
     contender: Contender,
 }
 
-/// What came of it.
+/// Outcome of a run.
 struct Ran {
     recorded: bool,
     counts: Counts,
@@ -69,7 +69,7 @@ fn ran(job: &Job<'_>) -> Option<Ran> {
     Some(ran)
 }
 
-/// Groups of the catalogue in which the record is told what is not so: the rotor was elsewhere, or another force acted.
+/// Groups of the catalogue in which the record is of inputs that are not so: the rotor was elsewhere, or another force acted.
 const FAULTS: [&str; 2] = ["sensor faults", "drive faults"];
 /// Groups in which a load changes while the rotor flies.
 const VARYING: [&str; 2] = ["blade loss", "shock"];

@@ -57,7 +57,7 @@ fn scenes() -> Result<Vec<(String, Scene, Config)>, TargetError> {
         .collect()
 }
 
-/// What came of a run.
+/// Outcome of a run.
 struct Ran {
     log: Vec<Tick>,
     figures: Figures,

@@ -58,7 +58,7 @@ impl Number {
     }
 }
 
-/// Fastest spin that `Q` is told \[1/t₀\].
+/// Fastest spin that `Q` is given \[1/t₀\].
 const FASTEST: f32 = 500.0;
 
 /// The core in fixed point behind a conversion, with a log of what passes between them.

@@ -1,4 +1,4 @@
-//! Recorded streams: what a supervisor was told on the host, and what it commanded.
+//! Recorded streams: inputs of a supervisor on the host, and what it commanded.
 
 use super::closed_loops::closed_loops;
 use super::coverage::Coverage;

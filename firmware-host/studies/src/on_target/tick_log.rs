@@ -10,7 +10,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use supervisor::{Command, Config, Mode, Sample};
 
-/// What a supervisor was told and what it commanded, as bytes: equal only with every bit of every number.
+/// Inputs of a supervisor and what it commanded, as bytes: equal only with every bit of every number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tick {
     pub(super) sample: [u8; SAMPLE_BYTES],
@@ -38,7 +38,7 @@ impl Tick {
 pub struct Piece {
     /// Its configuration.
     pub config: Config,
-    /// What it was told and what it commanded.
+    /// Its inputs and what it commanded.
     pub ticks: Vec<Tick>,
 }
 
@@ -62,7 +62,7 @@ pub type TickLog = Rc<RefCell<Vec<Tick>>>;
 pub struct Recording {
     /// Whoever supervises.
     pub supervisor: Box<dyn Supervise>,
-    /// What it was told and what it commanded.
+    /// Its inputs and what it commanded.
     pub log: TickLog,
 }
 

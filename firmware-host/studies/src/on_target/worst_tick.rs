@@ -27,7 +27,7 @@ const CHANGED: usize = 24;
 /// A round takes some seconds; more only where the emulator hangs.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// A tick that costs much, with all that was told before it.
+/// A tick that costs much, with all inputs before it.
 #[derive(Debug, Clone)]
 struct Dear {
     instructions: u32,

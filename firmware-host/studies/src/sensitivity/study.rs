@@ -15,7 +15,7 @@ const SEED: u64 = 1;
 /// AssumedMachine less force than there is, the supervisor uses less: no error of judgement.
 const LESS_FORCE: &str = "force cap × 0.8";
 
-/// What came of the trials with something configured wrong.
+/// Outcome of the trials with something configured wrong.
 #[derive(Debug, Clone)]
 pub struct ConfiguredWrong {
     /// What is configured wrong.
@@ -75,7 +75,7 @@ fn force_n(row: &ResultRow) -> f64 {
     (row.metrics.as_ref()).map_or(f64::NAN, |m| m.peak_contact_force_n)
 }
 
-/// What came of trials configured wrong in every way of a width.
+/// Outcome of trials configured wrong in every way of a width.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Recovered with levitation alone.

@@ -105,7 +105,7 @@ fn the_supervisor_of_a_whole_rotor_is_the_native_one() {
         let samples = planes.map(|(seen, trace)| sample(&seen, trace.levitation_n));
         let commands = native.tick(&samples).planes;
         for ((_, trace), command) in planes.iter().zip(&commands) {
-            // What is replayed here is what the loop was told, and what it did.
+            // What is replayed here is what the loop was given, and what it did.
             assert_eq!(*trace, SupervisorTrace::new(command, trace.levitation_n));
             modes.push(command.mode);
         }

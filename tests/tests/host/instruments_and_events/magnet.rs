@@ -358,7 +358,7 @@ fn outages_begin_at_any_time_under_a_slew_limit() {
 /// Whether the force is measured, and what it is [N], tick by tick.
 type AppliedForces = Rc<RefCell<Vec<(bool, [f32; 2])>>>;
 
-/// Keeps what the supervisor behind it is told of the force.
+/// Keeps the forces that the supervisor behind it is given.
 #[derive(Debug)]
 struct Listening {
     supervisor: Supervisor,

@@ -93,8 +93,8 @@ fn contradictions_are_named() {
         let message = Scene::parse("scene.toml", &with(contact))
             .unwrap_err()
             .to_string();
-        let told = message.contains(key) && message.contains(says);
-        assert!(told, "{key}, {says}: {message}");
+        let named = message.contains(key) && message.contains(says);
+        assert!(named, "{key}, {says}: {message}");
     }
     // With a plane and without, and not by series.
     for (from, to, key) in [

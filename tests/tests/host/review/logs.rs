@@ -86,14 +86,14 @@ fn a_log_shows_the_event_that_the_record_has() {
     let record = json(&out.join("record_supervisor.bin"), &scene, &[]);
     assert!(record["log"].is_null());
     let own = json(&trace, &scene, &[]);
-    let (told, seen) = (&own["summary"], &record["summary"]);
+    let (watched, seen) = (&own["summary"], &record["summary"]);
     assert_eq!(
-        (&told["outcome"], &told["touches"]),
+        (&watched["outcome"], &watched["touches"]),
         (&seen["outcome"], &seen["touches"])
     );
     for figure in ["hardest_impact_m_s", "contact_s", "severity"] {
         let (a, b) = (
-            told[figure].as_f64().unwrap(),
+            watched[figure].as_f64().unwrap(),
             seen[figure].as_f64().unwrap(),
         );
         assert!((a / b - 1.0).abs() < 0.05, "{figure}: {a}, recorded {b}");
@@ -114,7 +114,7 @@ fn a_log_shows_the_event_that_the_record_has() {
     fs::write(&written, foreign(&csv, true)).unwrap();
     let columns = [&NAMES[..], &FORCES].concat();
     let other = json(&written, &scene, &columns);
-    assert_eq!(other["summary"]["touches"], told["touches"]);
+    assert_eq!(other["summary"]["touches"], watched["touches"]);
     assert!(other["log"]["has_spin"] == false && other["log"]["has_force"] == true);
     if let Some(python) = python() {
         let mat = out.join("foreign.mat");

@@ -151,7 +151,7 @@ fn slips_are_warned_of() {
         let warning = said.lines().find(|l| l.starts_with("warning: "));
         assert!(warning.is_some_and(|w| w.contains(key)), "{key}: {said}");
     }
-    // Refused at another key: the slip is told beside it.
+    // Refused at another key: the slip is reported beside it.
     let said = warned("clearance_m = 2e-4", "clearance_m = 0.2");
     assert!(
         said.contains("look here first") && said.contains("contact.clearance_m: is larger"),
@@ -211,7 +211,7 @@ fn slips_are_warned_of() {
     }
 }
 
-/// A sweep is no scene and a scene no sweep; magnets that are told by currents, and an inertia that is too small, get numbers.
+/// A sweep is no scene and a scene no sweep; magnets that are given by currents, and an inertia that is too small, get numbers.
 #[test]
 fn what_was_meant_is_said() {
     let folder = TempDir::new().unwrap();
