@@ -8,7 +8,7 @@
 use plant_model::params::{
     MagnetParams, PlantParams, RotorParams, SpinParams, Start, StatorParams,
 };
-use plant_model::{Inputs, Method, Mode, Options, Plant, V2, build};
+use plant_model::{ContactMode, Inputs, Method, Options, Plant, V2, build};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
@@ -30,14 +30,14 @@ const PLAIN_LIBRARY: &str =
 /// What [`work`] does for each combination, in this order.
 const PIECES: [Piece; 3] = [
     Piece::Flight,
-    Piece::Contact(Mode::SlipPositive),
-    Piece::Contact(Mode::Roll),
+    Piece::Contact(ContactMode::SlipPositive),
+    Piece::Contact(ContactMode::Roll),
 ];
 
 #[derive(Debug, Clone, Copy)]
 enum Piece {
     Flight,
-    Contact(Mode),
+    Contact(ContactMode),
 }
 
 /// A combination of parts. Each is a level, and a higher level has more.
@@ -145,7 +145,7 @@ impl Parts {
             }
             Piece::Contact(mode) => {
                 options.method = Method::Series;
-                if mode == Mode::Roll {
+                if mode == ContactMode::Roll {
                     // v_w + Ω·R = 0, slow enough for friction to hold it there.
                     start.velocity_m_s.y = -0.02;
                     start.spin_rad_s = 0.2;
@@ -197,7 +197,7 @@ fn work_here() {
                     mark();
                     fly_samples(&mut plant, SAMPLES..2 * SAMPLES);
                     mark();
-                    Mode::Flight
+                    ContactMode::Flight
                 }
                 Piece::Contact(mode) => {
                     let inputs = Inputs {

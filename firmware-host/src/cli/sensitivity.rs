@@ -6,7 +6,7 @@ use crate::cli::progress::{LateProgress, Threads};
 use crate::cli::screen::print_wrapped;
 use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::table::shown;
-use firmware_bench::run::figures::{Figure, Figures, Place};
+use firmware_bench::run::figures::{Figure, Figures, TableLevel};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{PlaneScene, Scene};
 use firmware_studies::campaign::Progress;
@@ -100,7 +100,7 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
 }
 
 fn text(scene: &Scene, rows: &[Row]) -> String {
-    let columns = || (Figures::ALL.iter()).filter(|figure| figure.place == Place::Everywhere);
+    let columns = || (Figures::ALL.iter()).filter(|figure| figure.place == TableLevel::Everywhere);
     let mut header = vec![Cell::new("configured"), right("engaged")];
     header.extend(columns().map(Figure::title).map(right));
     let mut table = lined(header);

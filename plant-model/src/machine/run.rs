@@ -16,7 +16,7 @@ use crate::V2;
 use crate::energy::Flows;
 use crate::integrate::progress::Progress;
 use crate::integrate::{Method, Options, PlantError};
-use crate::mode::{Mode, Phase, Slide, Whirl};
+use crate::mode::{ContactMode, Phase, Slide, Whirl};
 use crate::params::ParamError;
 use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
@@ -203,7 +203,7 @@ impl Machine {
             let begun = self.progress.begin_step(&self.options, self.t_s);
             begun.map_err(|error| self.system.naming_fastest(error))?;
             let free = self.phases.iter().all(|phase| *phase == Phase::Inside);
-            let before: [Mode; MAX_PLANES] = self.modes();
+            let before: [ContactMode; MAX_PLANES] = self.modes();
             let (t_before, moment_s) = (self.t_s, self.system.moment_s(&self.y));
             self.step(t_end_s)?;
             self.check_state()?;
@@ -222,7 +222,7 @@ impl Machine {
     /// Calls for each plane whose mode is another than before.
     fn tell(
         &mut self,
-        before: [Mode; MAX_PLANES],
+        before: [ContactMode; MAX_PLANES],
         on_change: &mut dyn FnMut(usize, &MachineSnapshot),
     ) {
         let after = self.modes();
@@ -234,8 +234,8 @@ impl Machine {
         }
     }
 
-    fn modes(&self) -> [Mode; MAX_PLANES] {
-        let mut modes = [Mode::Flight; MAX_PLANES];
+    fn modes(&self) -> [ContactMode; MAX_PLANES] {
+        let mut modes = [ContactMode::Flight; MAX_PLANES];
         for (mode, phase) in modes.iter_mut().zip(&self.phases) {
             *mode = phase.mode();
         }
@@ -496,7 +496,7 @@ impl Machine {
     }
 
     /// Mode of each plane.
-    pub fn mode(&self, plane: usize) -> Option<Mode> {
+    pub fn mode(&self, plane: usize) -> Option<ContactMode> {
         Some(self.phases.get(plane)?.mode())
     }
 

@@ -72,7 +72,7 @@ fn in_two_planes(one: &PlantParams) -> MachineParams {
 struct Ran {
     rotor: Machine,
     /// Modes of each plane.
-    changes: Vec<Vec<Mode>>,
+    changes: Vec<Vec<ContactMode>>,
 }
 
 fn ran(params: &MachineParams, method: Method) -> Ran {
@@ -235,7 +235,7 @@ fn struck_beyond_the_centre_of_percussion_the_other_end_rests() {
     let struck = end.snapshot().position_m;
     close("struck", planes[1].rotor.position, struck, most);
     assert_eq!(rotor.meters()[1].impacts, end.meters().impacts);
-    assert!(rotor.meters()[1].impacts > 1 && planes[0].mode == Mode::Flight);
+    assert!(rotor.meters()[1].impacts > 1 && planes[0].mode == ContactMode::Flight);
 }
 
 /// Stiffer and stiffer in bending a shaft becomes the rigid rotor, at the rate of its compliance 1/ω².

@@ -182,7 +182,7 @@ fn a_long_flight_is_no_work_limit() {
     let end_s = 2.0 * Options::default().steps_per_sample as f64 / rate;
     let mut plant = build(&params, &from, Options::default()).unwrap();
     run_to(&mut plant, end_s);
-    assert_eq!(plant.snapshot().mode, Mode::Flight);
+    assert_eq!(plant.snapshot().mode, ContactMode::Flight);
     let few = Options {
         steps: 1000,
         ..Options::default()

@@ -4,7 +4,7 @@ use crate::calls::ending;
 use crate::code::Code;
 use crate::halves::{self, RECORD, RotorStorage, Storage};
 use crate::layout::defined;
-use crate::pointer::{Argument, Place};
+use crate::pointer::{Argument, OutPtr};
 use crate::storage::{Content, Lease, Making, Slot};
 use crate::structs::{CSection, CStamp};
 use core::mem::MaybeUninit;
@@ -164,7 +164,7 @@ pub unsafe extern "C" fn amb_archive_count(archive: *mut ArchiveStorage, count: 
     // SAFETY: the caller's promise.
     let done = unsafe { lease(archive) }.and_then(|mut archive| {
         // SAFETY: the caller's promise.
-        let place = unsafe { Place::new(Argument::Result, count) }?;
+        let place = unsafe { OutPtr::new(Argument::Result, count) }?;
         place.write(u32::try_from(archive.content().count()).unwrap_or(u32::MAX));
         Ok(())
     });
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn amb_archive_section(
         // SAFETY: the caller's promise.
         let stamp = unsafe { Argument::Stamp.read(stamp) }?.into();
         // SAFETY: the caller's promise.
-        let place = unsafe { Place::new(Argument::Result, section) }?;
+        let place = unsafe { OutPtr::new(Argument::Result, section) }?;
         let record = archive.content().oldest();
         let made = record.and_then(|record| record.section(index, &stamp));
         place.write(CSection::new(made.ok_or(Code::NOTHING)?.seal()));

@@ -3,7 +3,7 @@
 
 use crate::code::Code;
 use crate::halves::{self, Halves, Split, Storage};
-use crate::pointer::{Argument, Place};
+use crate::pointer::{Argument, OutPtr};
 use crate::structs::{CCommand, CEvent, CParameter, CReport, CSample, CSection, CStamp};
 use crate::{parameters, version};
 use core::ffi::{CStr, c_char};
@@ -45,7 +45,7 @@ pub extern "C" fn amb_error_text(code: Code) -> *const c_char {
 #[unsafe(export_name = concat!("amb_parameter_at", ending!()))]
 pub unsafe extern "C" fn amb_parameter_at(index: u32, parameter: *mut CParameter) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Result, parameter) } {
+    let place = match unsafe { OutPtr::new(Argument::Result, parameter) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn amb_parameter_index(name: *const c_char, index: *mut u3
         return Code::ERROR_NAME_NULL;
     }
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Result, index) } {
+    let place = match unsafe { OutPtr::new(Argument::Result, index) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn amb_tick(
     command: *mut CCommand,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Command, command) } {
+    let place = match unsafe { OutPtr::new(Argument::Command, command) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -223,7 +223,7 @@ pub unsafe extern "C" fn amb_tick(
 #[unsafe(export_name = concat!("amb_stimulus", ending!()))]
 pub unsafe extern "C" fn amb_stimulus(supervisor: *mut Storage, stimulus_n: *mut f32) -> Code {
     // SAFETY: the caller's promise; an array is aligned as its elements.
-    let place = unsafe { Place::new(Argument::Result, stimulus_n.cast::<[f32; 2]>()) };
+    let place = unsafe { OutPtr::new(Argument::Result, stimulus_n.cast::<[f32; 2]>()) };
     let done = place.and_then(|place| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(supervisor) }?;
@@ -244,7 +244,7 @@ pub(crate) unsafe fn with_reader<S: Split, T: Copy>(
     question: impl FnOnce(&mut S::Reader) -> Result<T, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Result, result) };
+    let place = unsafe { OutPtr::new(Argument::Result, result) };
     // SAFETY: the caller's promise.
     let lease = unsafe { halves::reader(asked) };
     let answer = lease.and_then(|mut lease| {
@@ -266,7 +266,7 @@ pub(crate) unsafe fn with_published<S: Split, T: Copy>(
     question: impl FnOnce(S::Published) -> Result<T, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Result, result) };
+    let place = unsafe { OutPtr::new(Argument::Result, result) };
     // SAFETY: the caller's promise.
     let published = unsafe { halves::published(asked) };
     let answer = published.and_then(|published| {
@@ -373,7 +373,7 @@ pub(crate) unsafe fn write_section<S: Split>(
     // SAFETY: the caller's promise.
     let stamp = unsafe { Argument::Stamp.read(stamp) }?.into();
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Result, section) }?;
+    let place = unsafe { OutPtr::new(Argument::Result, section) }?;
     // SAFETY: the caller's promise.
     let made = section_of(unsafe { halves::reader(asked) }?.content(), &stamp);
     let mut made = made.ok_or(Code::NOTHING)?;

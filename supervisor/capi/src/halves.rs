@@ -30,12 +30,12 @@ pub struct Halves<T: Split> {
 /// What is in an `amb_supervisor`.
 pub type Storage = Halves<Supervisor<RECORD>>;
 /// What is in an `amb_rotor`.
-pub type RotorStorage = Halves<Rotor>;
+pub type RotorStorage = Halves<RotorParts>;
 
 /// A rotor in pieces, each made in its place.
 #[derive(Debug)]
 #[repr(C)]
-pub struct Rotor {
+pub struct RotorParts {
     machine: RotorCore,
     planes: [Supervisor<RECORD>; 2],
 }
@@ -82,7 +82,7 @@ pub struct RotorTicks {
     pub(crate) first: Option<HalfTick>,
 }
 
-impl Split for Rotor {
+impl Split for RotorParts {
     type Ticker = RotorTicks;
     type Reader = RotorReader<'static, RECORD>;
     type Published = [Seen; 2];
@@ -145,7 +145,7 @@ const fn fits<T: Split>(spare: usize) -> bool {
 
 const _: () = {
     // Room for the pointers and the alignment of any target, and to grow a little.
-    assert!(fits::<Supervisor<RECORD>>(2048) && fits::<Rotor>(4096));
+    assert!(fits::<Supervisor<RECORD>>(2048) && fits::<RotorParts>(4096));
     assert!(defined("AMB_RECORD_ENTRIES") == RECORD);
 };
 
@@ -282,7 +282,7 @@ pub(crate) unsafe fn make_rotor(
 /// Piece by piece: the compiler makes a whole one on the stack first.
 #[inline(never)]
 fn init_rotor(
-    place: &mut MaybeUninit<Rotor>,
+    place: &mut MaybeUninit<RotorParts>,
     shaft: &Shaft,
     configs: &[Config; 2],
 ) -> Result<(), ShaftError> {

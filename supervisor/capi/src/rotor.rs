@@ -3,7 +3,7 @@
 use crate::calls::{configurations, ending, with_published, with_reader, write_section};
 use crate::code::Code;
 use crate::halves::{self, RotorStorage, RotorTicks};
-use crate::pointer::{Argument, Place};
+use crate::pointer::{Argument, OutPtr};
 use crate::structs::{CCommand, CEvent, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp};
 use supervisor::Sample;
 
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn amb_rotor_tick(
     command: *mut CRotorCommand,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Command, command) } {
+    let place = match unsafe { OutPtr::new(Argument::Command, command) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -177,7 +177,7 @@ unsafe fn half<C: Copy>(
     tick: impl FnOnce(&mut RotorTicks, Sample) -> Result<C, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Command, command) } {
+    let place = match unsafe { OutPtr::new(Argument::Command, command) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -207,7 +207,7 @@ pub unsafe extern "C" fn amb_rotor_stimulus(
     stimulus_n: *mut f32,
 ) -> Code {
     // SAFETY: the caller's promise; an array is aligned as its elements.
-    let place = unsafe { Place::new(Argument::Result, stimulus_n.cast::<[[f32; 2]; 2]>()) };
+    let place = unsafe { OutPtr::new(Argument::Result, stimulus_n.cast::<[[f32; 2]; 2]>()) };
     let done = place.and_then(|place| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(rotor) }?;

@@ -3,7 +3,7 @@
 use crate::calls::ending;
 use crate::code::Code;
 use crate::layout::defined;
-use crate::pointer::{Argument, Place};
+use crate::pointer::{Argument, OutPtr};
 use crate::storage::{Content, Lease, Making, Slot};
 use supervisor::CommandWatchdog;
 
@@ -73,7 +73,7 @@ pub unsafe extern "C" fn amb_watch_renew(watch: *mut WatchStorage, force: *const
 #[unsafe(export_name = concat!("amb_watch_force", ending!()))]
 pub unsafe extern "C" fn amb_watch_force(watch: *mut WatchStorage, force: *mut f32) -> Code {
     // SAFETY: the caller's promise. An array is aligned as its elements.
-    let place = match unsafe { Place::new(Argument::Force, force.cast::<[f32; 2]>()) } {
+    let place = match unsafe { OutPtr::new(Argument::Force, force.cast::<[f32; 2]>()) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -98,7 +98,7 @@ pub unsafe extern "C" fn amb_watch_force(watch: *mut WatchStorage, force: *mut f
 #[unsafe(export_name = concat!("amb_watch_expired", ending!()))]
 pub unsafe extern "C" fn amb_watch_expired(watch: *mut WatchStorage, expired: *mut u32) -> Code {
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Result, expired) };
+    let place = unsafe { OutPtr::new(Argument::Result, expired) };
     // SAFETY: the caller's promise.
     let lease = unsafe { slot(watch) }.and_then(Lease::new);
     let answer = lease.and_then(|mut lease| {

@@ -23,7 +23,7 @@ pub enum Digits {
 
 /// In which tables a figure stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum TableLevel {
     /// Also in those that have room for few.
     Everywhere,
     /// In those of all figures.
@@ -55,7 +55,7 @@ pub struct Figure<T> {
     /// With how many digits.
     pub digits: Digits,
     /// In which tables.
-    pub place: Place,
+    pub place: TableLevel,
     /// Reads it.
     pub value: fn(&T) -> Value,
 }
@@ -93,7 +93,7 @@ macro_rules! figures {
 }
 
 use Digits::{Fixed, Power, Significant};
-use Place::{Everywhere, Full};
+use TableLevel::{Everywhere, Full};
 
 figures! {
     /// Outcome of a run, in SI units. The same scene gives the same, on every machine.

@@ -7,7 +7,7 @@ use crate::run::outcome::Outcome;
 use crate::run::trace::{Recorder, TraceRow};
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
-use plant_model::{Method, Mode, V2};
+use plant_model::{ContactMode, Method, V2};
 use serde::Serialize;
 
 /// Number of checks of a run.
@@ -93,7 +93,7 @@ pub struct Track {
     /// Positions at control samples, which stand at the same times in every run of a scene \[m\].
     positions_m: Vec<V2>,
     /// Modes in the order in which they were entered.
-    modes: Vec<Mode>,
+    modes: Vec<ContactMode>,
 }
 
 impl Recorder for Track {

@@ -1,7 +1,7 @@
 //! Outcome of a sweep, read from its results.
 
 use crate::run::columns::Kind;
-use crate::run::figures::{Figures, Place};
+use crate::run::figures::{Figures, TableLevel};
 use crate::run::outcome::Outcome;
 use crate::scene::policy_kind::PolicyKind;
 use crate::sweep::design::Design;
@@ -177,7 +177,7 @@ struct Tally {
 
 /// Keys of the main figures.
 fn main_figures() -> Vec<&'static str> {
-    let main = (Figures::ALL.iter()).filter(|figure| figure.place == Place::Everywhere);
+    let main = (Figures::ALL.iter()).filter(|figure| figure.place == TableLevel::Everywhere);
     main.map(|figure| figure.key)
         .filter(|key| *key != "outcome")
         .collect()

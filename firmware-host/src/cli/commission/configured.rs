@@ -8,13 +8,13 @@ use firmware_bench::scene::Scene;
 use std::path::{Path, PathBuf};
 use supervisor::{PARAMETERS, Shaft};
 
-/// A machine as its scene has it.
-pub(super) struct Machine {
+/// The configured machine, as its scene has it.
+pub(super) struct Setup {
     path: PathBuf,
     scene: Scene,
 }
 
-impl Machine {
+impl Setup {
     /// Of a scene file.
     ///
     /// # Errors

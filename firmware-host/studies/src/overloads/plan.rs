@@ -88,7 +88,7 @@ fn with_at_least<S: Serializer>(claims: &[Claim], to: S) -> Result<S::Ok, S::Err
 }
 
 /// A plant at one control rate, with what is kept for it and what happens to it.
-struct Place {
+struct Site {
     plant: PlantCase,
     found: TunedGains,
     cases: Vec<Case>,
@@ -96,12 +96,12 @@ struct Place {
 
 /// A run of the plan.
 enum Job<'a> {
-    Case(&'a Place, &'a Case, Contender, u64),
+    Case(&'a Site, &'a Case, Contender, u64),
     Own(&'a Scene, PolicyKind, u64),
 }
 
 /// A sweep of the plan: place, contender, seed.
-type SweepJob<'a> = (&'a Place, Contender, u64);
+type SweepJob<'a> = (&'a Site, Contender, u64);
 
 /// A sweep takes about as long as so many runs.
 const SWEEP_WORTH: u64 = 40;
@@ -109,7 +109,7 @@ const SWEEP_WORTH: u64 = 40;
 /// What will be run: the catalogue in an extent, and a user's own scenes with it.
 pub struct Plan {
     extent: Extent,
-    places: Vec<Place>,
+    places: Vec<Site>,
     own: Vec<Scene>,
 }
 
@@ -127,7 +127,7 @@ impl Plan {
                         plant: plant.name.clone(),
                         rate_hz,
                     })?;
-                places.push(Place {
+                places.push(Site {
                     cases: cases(&plant, found.tuned),
                     plant,
                     found,
@@ -194,7 +194,7 @@ impl Plan {
         let results: Vec<ResultRow> = (self.jobs().par_iter())
             .map(|job| {
                 let row = match job {
-                    Job::Case(Place { plant, found, .. }, case, contender, seed) => run_case(
+                    Job::Case(Site { plant, found, .. }, case, contender, seed) => run_case(
                         case,
                         (&plant.name, plant.rate_hz),
                         (*contender, *seed),
@@ -223,7 +223,7 @@ impl Plan {
 
     fn sweeps(&self, progress: &dyn Progress) -> Result<Vec<SweepRow>, CatalogueError> {
         let points = (self.sweep_jobs().par_iter())
-            .map(|(Place { plant, found, .. }, contender, seed)| {
+            .map(|(Site { plant, found, .. }, contender, seed)| {
                 let point = sweep(plant, found, (*contender, *seed)).map_err(|reason| {
                     CatalogueError::Run {
                         plant: plant.name.clone(),
