@@ -715,11 +715,11 @@ impl Progress {
         let reversed =
             stands_out(backward, max(minute, between)) && backward > BACKWARD * BACKWARD * forward;
         // All windows have to say the same.
-        let said = u8::from(unit) + 2 * u8::from(reversed);
+        let signs = u8::from(unit) + 2 * u8::from(reversed);
         self.rounds = if self.stage == SPIN {
-            said
+            signs
         } else {
-            self.rounds & said
+            self.rounds & signs
         };
         if self.stage < LAST_SPIN {
             self.stage += 1;

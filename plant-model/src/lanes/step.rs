@@ -40,7 +40,7 @@ pub(super) fn begin(rows: &mut Rows, group: &Group) {
     (rows.cos[0], rows.sin[0]) = (group.direction.x, group.direction.y);
 }
 
-/// θ up to which the series can be trusted: see [`crate::integrate::enough::trusted_theta`].
+/// θ up to which the series can be trusted: see [`crate::integrate::order_control::trusted_theta`].
 #[inline(always)]
 pub(super) fn trusted(rows: &Rows, order: usize, (position, velocity): (Lanes, Lanes)) -> Lanes {
     let mut least = Lanes::all(f64::INFINITY);

@@ -170,9 +170,9 @@ fn a_clearance_follows_its_heat() {
         closes("heat", rotor.audit().residual(), 1e-8);
         for p in [0, 1] {
             let warmth = rotor.warmth(p).unwrap();
-            let said = PLAY_M + expansion_m_k * warmth.rise_k;
-            near("clearance", warmth.clearance_m, said, 1e-9);
-            assert!((said / PLAY_M - 1.0).abs() > 0.02, "{warmth:?}");
+            let want = PLAY_M + expansion_m_k * warmth.rise_k;
+            near("clearance", warmth.clearance_m, want, 1e-9);
+            assert!((want / PLAY_M - 1.0).abs() > 0.02, "{warmth:?}");
         }
     }
     let mut params = seated();

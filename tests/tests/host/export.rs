@@ -22,14 +22,14 @@ fn a_trace_is_the_same_in_every_format() {
     let trace = folder.path().join("trace_supervisor.parquet");
     for format in ["csv", "mcap"] {
         let output = export(&trace, &["--to", format]);
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{said}");
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{text}");
     }
     let digest = firmware_bench::sweep::plan::digest(&scene).unwrap();
     let name = folder.path().to_str().unwrap();
     let arguments = [name, "trace_supervisor", digest.as_str()];
-    let said = checked(&python, "tests/python/exports.py", &arguments);
-    assert!(said.contains("rows the same three times"), "{said}");
+    let text = checked(&python, "tests/python/exports.py", &arguments);
+    assert!(text.contains("rows the same three times"), "{text}");
 }
 
 #[test]
@@ -39,10 +39,10 @@ fn what_is_no_trace_is_refused_and_leaves_nothing() {
     let scene = scene_path("impact_at_40_hz");
     for file in [scene, folder.path().join("nowhere.parquet")] {
         let output = export(&file, &["--to", "csv", "--out", out.to_str().unwrap()]);
-        let said = String::from_utf8_lossy(&output.stderr);
+        let text = String::from_utf8_lossy(&output.stderr);
         let name = file.file_name().unwrap().to_str().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(name) && said.contains("a trace that run has written"));
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(text.contains(name) && text.contains("a trace that run has written"));
         assert!(!out.exists());
     }
 }

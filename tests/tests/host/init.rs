@@ -179,12 +179,12 @@ fn what_is_missing_or_wrong_is_named_and_nothing_is_written() {
         // … and pulls more than the cap.
         ("-2e5", "-2e9", "cannot lift the rotor off"),
     ];
-    for (from, to, said) in cases {
+    for (from, to, shown) in cases {
         assert!(SMALL.contains(from));
         let refused = init(&file, &SMALL.replace(from, to));
         let error = String::from_utf8_lossy(&refused.stderr);
         assert_eq!(refused.status.code(), Some(2), "{error}");
-        assert!(error.contains(said), "{said} is not in\n{error}");
+        assert!(error.contains(shown), "{shown} is not in\n{error}");
     }
     let refused = init(&folder.path().join("none/machine.toml"), SMALL);
     let error = String::from_utf8_lossy(&refused.stderr);

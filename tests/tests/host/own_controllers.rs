@@ -166,13 +166,13 @@ fn a_controller_of_the_callers_stands_in_the_place_of_gains() {
             assert!(own == figures && own_rows == rows, "{kind:?} {table}");
         }
     }
-    let said = |table: &str| trace(&of_caller(table), BOTH[0]).unwrap_err().to_string();
+    let shown = |table: &str| trace(&of_caller(table), BOTH[0]).unwrap_err().to_string();
     assert_eq!(
-        said("[controller]\nparameters = [1.0]\n"),
+        shown("[controller]\nparameters = [1.0]\n"),
         "policy levitation: controller gains at 0 s: answered 3 forces, expected 2"
     );
     assert_eq!(
-        said("[controller]\nparameters = [13.0]\n"),
+        shown("[controller]\nparameters = [13.0]\n"),
         "policy levitation: controller: gains has no luck"
     );
 }
@@ -268,8 +268,8 @@ fn the_examples_hold_their_rotor() {
         let ran = |threads: &str| {
             let out = folder.path().join(format!("{name}_{threads}"));
             let output = run_scene(&path, &out, &["--json", "--threads", threads]);
-            let said = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{name}: {said}");
+            let shown = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{name}: {shown}");
             let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
             for policy in ["levitation", "supervisor"] {
                 let outcome = &json["policies"][policy]["outcome"];

@@ -105,9 +105,9 @@ fn what_cannot_be_simulated_is_named() {
     ];
     for (arguments, word) in refused {
         let shown = review(&file, arguments);
-        let said = String::from_utf8_lossy(&shown.stderr).into_owned();
-        assert_eq!(shown.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains(word), "{word} is not in\n{said}");
+        let printed = String::from_utf8_lossy(&shown.stderr).into_owned();
+        assert_eq!(shown.status.code(), Some(2), "{arguments:?}: {printed}");
+        assert!(printed.contains(word), "{word} is not in\n{printed}");
         assert!(shown.stdout.is_empty());
     }
 }

@@ -202,9 +202,9 @@ fn a_rotor_has_two_ledgers() {
     );
     files.put("ledger.bin", &ledgers[0].to_bytes());
     let refused = files.review(&["--ledger", "ledger.bin"]);
-    let said = String::from_utf8_lossy(&refused.stderr);
-    assert_eq!(refused.status.code(), Some(2), "{said}");
-    assert!(said.contains("it has 48 bytes"), "{said}");
+    let shown = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{shown}");
+    assert!(shown.contains("it has 48 bytes"), "{shown}");
 }
 
 /// Requirement: SR-39
@@ -227,14 +227,14 @@ fn a_ledger_that_is_none_gives_an_error_and_no_figure() {
         for json in [&[][..], &["--json"]] {
             let output = files.review(&[more, json].concat());
             // Lines are wrapped to the terminal's width.
-            let said = String::from_utf8_lossy(&output.stderr);
-            let said = said
+            let shown = String::from_utf8_lossy(&output.stderr);
+            let shown = shown
                 .replace('│', " ")
                 .split_whitespace()
                 .collect::<Vec<_>>()
                 .join(" ");
-            assert_eq!(output.status.code(), Some(2), "{said}");
-            assert!(said.contains(wanted), "{wanted}: {said}");
+            assert_eq!(output.status.code(), Some(2), "{shown}");
+            assert!(shown.contains(wanted), "{wanted}: {shown}");
             let stdout = String::from_utf8_lossy(&output.stdout);
             assert!(
                 !stdout.contains("Room for") && !stdout.contains("left_like"),

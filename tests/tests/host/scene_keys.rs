@@ -134,8 +134,8 @@ fn the_schema_takes_every_scene_and_no_mistake() {
         ),
         ("[contact]", "[contakt]", ": "),
     ] {
-        let said = wrong(from, to).unwrap_or_default();
-        assert!(said.starts_with(word), "{to}: {said}");
+        let shown = wrong(from, to).unwrap_or_default();
+        assert!(shown.starts_with(word), "{to}: {shown}");
     }
 }
 

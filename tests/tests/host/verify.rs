@@ -417,8 +417,8 @@ fn a_levitation_loop_that_hardly_holds_is_warned_of() {
                 _ => vec![word, &path],
             };
             let result = system_tests::host().args(args).output().unwrap();
-            let said = String::from_utf8_lossy(&result.stderr);
-            assert!(said.contains(words.unwrap()), "{word}: {said}");
+            let shown = String::from_utf8_lossy(&result.stderr);
+            assert!(shown.contains(words.unwrap()), "{word}: {shown}");
         }
     }
 }

@@ -87,14 +87,14 @@ fn the_script_computes_the_stored_loops() {
             .arg("--check")
             .output()
             .unwrap();
-        let said = String::from_utf8(ran.stdout).unwrap();
-        let off: Vec<f64> = (said.lines())
+        let shown = String::from_utf8(ran.stdout).unwrap();
+        let off: Vec<f64> = (shown.lines())
             .map(|line| line.split_once(' ').unwrap().1.parse().unwrap())
             .collect();
         assert_eq!(
             off.len(),
             4,
-            "{said}{}",
+            "{shown}{}",
             String::from_utf8_lossy(&ran.stderr)
         );
         (ran.status.success(), off)

@@ -33,7 +33,7 @@ fn rubs(commands: &[Command]) -> usize {
 /// Said once, soon after contact is known to last, at the spin's rate and no other.
 #[test]
 fn said_once_and_only_of_the_spins_rate() {
-    for (rate, said) in [
+    for (rate, expected) in [
         (1.0, 1),
         (0.82, 1),
         (1.18, 1),
@@ -41,7 +41,7 @@ fn said_once_and_only_of_the_spins_rate() {
         (1.35, 0),
         (-1.0, 0),
     ] {
-        assert_eq!(rubs(&commands_at(rate)), said, "{rate} ×");
+        assert_eq!(rubs(&commands_at(rate)), expected, "{rate} ×");
     }
     let commands = commands_at(1.0);
     let at = commands

@@ -55,14 +55,14 @@ fn what_levitation_carries_it_is_given() {
                 continue;
             }
             let (own, trace) = run(Contender::Supervisor);
-            let said = format!("{}: {share} caps, landing {landing}", unseen.text);
-            assert!(own.recovered, "{said}: {own:?}");
+            let shown = format!("{}: {share} caps, landing {landing}", unseen.text);
+            assert!(own.recovered, "{shown}: {own:?}");
             let last = trace.rows.iter().filter(|row| row.plant.t_s > 0.45);
             let modes: Vec<Mode> = last
                 .filter_map(firmware_bench::run::trace::TraceRow::supervisor_mode)
                 .collect();
             let levitated = modes.iter().filter(|m| **m == Mode::Levitated).count();
-            assert!(10 * levitated > 9 * modes.len(), "{said}");
+            assert!(10 * levitated > 9 * modes.len(), "{shown}");
             carried += 1;
             touched += usize::from(own.impacts > 0);
         }

@@ -58,13 +58,13 @@ pub(crate) fn scene_of(plan: &Plan, run: u64) -> Result<String, SweepError> {
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     absolute_files(document.as_table_mut(), folder);
-    let said: Vec<String> = keys.map(str::to_owned).collect();
+    let settings: Vec<String> = keys.map(str::to_owned).collect();
     let name = plan.file.text.path.file_name().unwrap_or_default();
     Ok(format!(
         "# Run {run} of {}, which sets run.seed, run.policies{}{}.\n{document}",
         name.to_string_lossy(),
-        if said.is_empty() { "" } else { ", " },
-        said.join(", "),
+        if settings.is_empty() { "" } else { ", " },
+        settings.join(", "),
     ))
 }
 

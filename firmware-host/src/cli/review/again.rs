@@ -46,8 +46,8 @@ pub(super) fn simulate(
     }
     if !settings.is_empty() {
         let other = scene_of_event(spec.clone(), of, settings)?;
-        let said: Vec<String> = settings.iter().map(Setting::to_string).collect();
-        let name = format!("supervisor, {}", said.join(", "));
+        let texts: Vec<String> = settings.iter().map(Setting::to_string).collect();
+        let name = format!("supervisor, {}", texts.join(", "));
         keep(&mut results, &name, &other, PolicyKind::Supervisor);
     }
     Ok(Again {

@@ -123,7 +123,7 @@ pub(crate) fn carry_with(
 ) -> Snapshot {
     plant.advance(t_s, &load(external_n), on_change).unwrap();
     let now = plant.snapshot();
-    let said = [
+    let values = [
         now.position_m.norm(),
         now.velocity_m_s.norm(),
         now.inner_ring.position.norm() + now.inner_ring.velocity.norm(),
@@ -134,7 +134,7 @@ pub(crate) fn carry_with(
         plant.meters().peak_contact_force_n,
         plant.audit().turnover_j(),
     ];
-    assert!(said.iter().all(|x| x.is_finite()), "{now:?}");
+    assert!(values.iter().all(|x| x.is_finite()), "{now:?}");
     let audit = plant.audit();
     let gap_j = audit.residual() * audit.turnover_j();
     // Energy is known to round-off in the spin, of some ten thousand steps that may all round the same way.

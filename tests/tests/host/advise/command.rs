@@ -132,9 +132,9 @@ fn bad_numbers_end_with_code_2_and_say_what_is_wrong() {
     for (args, message) in cases {
         let args: Vec<&str> = args.iter().map(String::as_str).collect();
         let output = advise(&args);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        assert!(said.contains(message), "{args:?}: {said}");
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {text}");
+        assert!(text.contains(message), "{args:?}: {text}");
         assert!(output.stdout.is_empty());
     }
 }

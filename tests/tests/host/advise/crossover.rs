@@ -215,8 +215,8 @@ fn a_known_spin_moves_the_crossover_by_little() {
                 "{hz}, {spin_hz}"
             );
             let same_hz = spin_hz.abs();
-            let said = analysis.damping_n_s_m(same_hz).unwrap();
-            assert!(damping(same_hz) > 0.99 * said, "{spin_hz}: {said}");
+            let value = analysis.damping_n_s_m(same_hz).unwrap();
+            assert!(damping(same_hz) > 0.99 * value, "{spin_hz}: {value}");
         }
     }
 }

@@ -258,7 +258,7 @@ fn a_runout_may_be_told_beside_a_scene() {
     ] {
         let output = advise(&args);
         assert_eq!(output.status.code(), Some(2));
-        let said = stderr(&output);
-        assert!(said.contains(message), "{said}");
+        let shown = stderr(&output);
+        assert!(shown.contains(message), "{shown}");
     }
 }

@@ -252,7 +252,7 @@ fn a_file_that_is_no_course_is_refused() {
         ),
     ];
     for (file, keys, part) in cases {
-        let said = refused(file, keys).replace('\n', " ");
-        assert!(said.contains(part), "{part}: {said}");
+        let shown = refused(file, keys).replace('\n', " ");
+        assert!(shown.contains(part), "{part}: {shown}");
     }
 }

@@ -380,8 +380,8 @@ fn holds(lied: &Lied, reviewed: &Reviewed<'_>, shown: &mut Shown) {
 /// Readings that the supervisor did not believe, tick by tick of the run.
 fn refused(lied: &Lied) -> Vec<i64> {
     let bad = |row: &&TraceRow| {
-        row.supervisor.is_some_and(|said| {
-            said.limits.contains(Limits::SAMPLE_REFUSED) || said.mode == Mode::SensorFault
+        row.supervisor.is_some_and(|trace| {
+            trace.limits.contains(Limits::SAMPLE_REFUSED) || trace.mode == Mode::SensorFault
         })
     };
     let rows = lied.trace.rows.iter().filter(|row| !row.mode_change);
@@ -438,14 +438,14 @@ fn no_sentence_contradicts_the_plant() {
         shown.whirls > 15 && shown.honest > 45 && shown.doubted > 60,
         "{shown:?}"
     );
-    let said = [
+    let cases = [
         ("\"nan\"", Reason::NotANumber),
         ("\"infinity\"", Reason::NotANumber),
         ("\"rail\"", Reason::OutOfRange),
         ("\"stuck\"", Reason::DidNotChange),
         ("\"dropout\"", Reason::NoNewSample),
     ];
-    for (kind, reason) in said {
+    for (kind, reason) in cases {
         let of: Vec<_> = reasons.iter().filter(|(k, _)| k.contains(kind)).collect();
         assert!(
             of.len() > 3 && of.iter().all(|(_, r)| *r == reason),

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 fn negative_numbers_reach_their_option() {
     let path = scene_path("overload_then_release");
     let scene = path.to_str().unwrap();
-    for (args, said) in [
+    for (args, text) in [
         (
             vec!["sensitivity", scene, "--width", "-1"],
             "expected a number from 0.1 to 4",
@@ -44,7 +44,7 @@ fn negative_numbers_reach_their_option() {
         let output = host().args(&args).output().unwrap();
         let error = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{args:?}: {error}");
-        assert!(error.contains(said), "{args:?}: {error}");
+        assert!(error.contains(text), "{args:?}: {error}");
         assert!(!error.contains("tip:"), "{args:?}: {error}");
     }
 }

@@ -59,7 +59,7 @@ fn a_value_that_is_set_is_as_one_that_is_written() {
     assert!(run_scene(&plain, &out("plain"), &[]).status.success());
     assert!(results(&out("plain")) != results(&out("set")));
 
-    for (setting, said) in [
+    for (setting, shown) in [
         ("friction.coeficient=0.3", "did you mean `coefficient`"),
         ("friction.coefficient", "KEY=VALUE"),
         ("friction.coefficient=much", "KEY=VALUE"),
@@ -69,7 +69,7 @@ fn a_value_that_is_set_is_as_one_that_is_written() {
         let refused = run_scene(&plain, &out("refused"), &["--set", setting]);
         let error = String::from_utf8_lossy(&refused.stderr);
         assert!(
-            refused.status.code() == Some(2) && error.contains(said),
+            refused.status.code() == Some(2) && error.contains(shown),
             "{setting}: {error}"
         );
         assert!(!out("refused").exists());

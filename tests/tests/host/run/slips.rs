@@ -112,9 +112,9 @@ fn slips_are_warned_of() {
             _ => key.replace("[0]", "[]"),
         };
         assert!(listed.contains(&format!("`{in_page}`")), "{key}");
-        let said = warned(from, to);
-        let warning = said.lines().find(|l| l.starts_with("warning: "));
-        let warning = warning.unwrap_or_else(|| panic!("{to}: {said}"));
+        let shown = warned(from, to);
+        let warning = shown.lines().find(|l| l.starts_with("warning: "));
+        let warning = warning.unwrap_or_else(|| panic!("{to}: {shown}"));
         assert!(
             warning.contains(key) && warning.contains("short.toml:"),
             "{warning}"
@@ -147,15 +147,15 @@ fn slips_are_warned_of() {
             (edits.iter()).fold(t, |t, (from, to)| t.replacen(from, to, 1))
         });
         let result = run_scene(&scene, &folder.path().join("out"), &[]);
-        let said = String::from_utf8(result.stderr).unwrap();
-        let warning = said.lines().find(|l| l.starts_with("warning: "));
-        assert!(warning.is_some_and(|w| w.contains(key)), "{key}: {said}");
+        let shown = String::from_utf8(result.stderr).unwrap();
+        let warning = shown.lines().find(|l| l.starts_with("warning: "));
+        assert!(warning.is_some_and(|w| w.contains(key)), "{key}: {shown}");
     }
     // Refused at another key: the slip is reported beside it.
-    let said = warned("clearance_m = 2e-4", "clearance_m = 0.2");
+    let shown = warned("clearance_m = 2e-4", "clearance_m = 0.2");
     assert!(
-        said.contains("look here first") && said.contains("contact.clearance_m: is larger"),
-        "{said}"
+        shown.contains("look here first") && shown.contains("contact.clearance_m: is larger"),
+        "{shown}"
     );
     // A supervisor would refuse such a sensor. The folder keeps what was said on the screen.
     let scene = short_scene(folder.path(), |t| {
@@ -164,15 +164,15 @@ fn slips_are_warned_of() {
             .replace("quantum_m = 1e-7", "quantum_m = 2.1e-4")
     });
     let out = folder.path().join("blind");
-    let said = String::from_utf8(run_scene(&scene, &out, &[]).stderr).unwrap();
+    let shown = String::from_utf8(run_scene(&scene, &out, &[]).stderr).unwrap();
     let verdict = fs::read_to_string(out.join("verdict.json")).unwrap();
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     for key in [
         "sensor.noise_rms_m: is larger",
         "sensor.quantum_m: is larger",
     ] {
-        for text in [&said, &verdict, &report] {
-            assert!(text.contains(key), "{key}: {said}");
+        for text in [&shown, &verdict, &report] {
+            assert!(text.contains(key), "{key}: {shown}");
         }
     }
     for (from, to) in [

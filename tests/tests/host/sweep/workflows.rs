@@ -42,15 +42,15 @@ fn snakemake_makes_the_bytes_of_one_machine() {
     succeeds(&sweep(&file, &whole, &[]));
 
     let first = snakemake(&tool, folder.path(), (&file, &parts));
-    let said = succeeds(&first) + &String::from_utf8_lossy(&first.stderr);
+    let text = succeeds(&first) + &String::from_utf8_lossy(&first.stderr);
     // Three parts and the whole, for which nothing was left.
-    assert!(said.contains("4 of 4 steps (100%) done"), "{said}");
-    assert!(said.contains("nothing was left to run"), "{said}");
+    assert!(text.contains("4 of 4 steps (100%) done"), "{text}");
+    assert!(text.contains("nothing was left to run"), "{text}");
     assert!(contents(&parts) == contents(&whole));
 
     let again = snakemake(&tool, folder.path(), (&file, &parts));
-    let said = succeeds(&again) + &String::from_utf8_lossy(&again.stderr);
-    assert!(said.contains("Nothing to be done"), "{said}");
+    let text = succeeds(&again) + &String::from_utf8_lossy(&again.stderr);
+    assert!(text.contains("Nothing to be done"), "{text}");
 }
 
 /// As the page has it.
@@ -76,8 +76,8 @@ fn salib_reads_the_results() {
         .current_dir(folder.path())
         .output()
         .unwrap();
-    let said = succeeds(&ran);
-    assert!(said.contains("delta") && said.contains("S1"), "{said}");
+    let text = succeeds(&ran);
+    assert!(text.contains("delta") && text.contains("S1"), "{text}");
 }
 
 #[test]
