@@ -25,7 +25,7 @@ pub(crate) fn try_bracket<E>(
     }
 }
 
-/// [`try_bracket`] with a condition that can always be told.
+/// [`try_bracket`] with a condition that can always be decided.
 pub(crate) fn bracket_until(
     ends: (f64, f64),
     narrow: impl Fn(f64, f64) -> bool,

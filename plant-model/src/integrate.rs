@@ -1,7 +1,7 @@
 //! By which method, how accurately and with how much work a run is integrated, and why it may end.
 
-pub(crate) mod enough;
-pub(crate) mod first_fall;
+pub(crate) mod first_crossing;
+pub(crate) mod order_control;
 pub(crate) mod progress;
 
 use crate::params::{ParamError, check};

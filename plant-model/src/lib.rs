@@ -93,7 +93,7 @@ mod vector;
 
 pub use integrate::{Fastest, Method, Options, PlantError};
 pub use machine::params::Change;
-pub use mode::Mode;
+pub use mode::ContactMode;
 pub use plant::{BuildError, Inputs, Plant, build};
 pub use readout::{Meters, Snapshot, Work};
 pub use vector::{Body, V2};

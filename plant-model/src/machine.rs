@@ -21,7 +21,7 @@
 //! use plant_model::machine::params::*;
 //! use plant_model::machine::{Machine, MachineInputs};
 //! use plant_model::params::*;
-//! use plant_model::{Mode, Options, V2};
+//! use plant_model::{ContactMode, Options, V2};
 //!
 //! let plane = |position_m: f64| MachinePlane {
 //!     position_m,
@@ -61,7 +61,7 @@
 //! let mut touched = [false; 2];
 //! machine.advance(0.05, &MachineInputs::default(), &mut |plane, now| {
 //!     let mode = now.planes().nth(plane).map(|p| p.mode);
-//!     touched[plane] |= mode.is_some_and(Mode::in_contact);
+//!     touched[plane] |= mode.is_some_and(ContactMode::in_contact);
 //! })?;
 //!
 //! assert_eq!(touched, [true; 2]);

@@ -2,7 +2,7 @@
 
 /// What the rotor does at an instant, as a reader sees it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-pub enum Mode {
+pub enum ContactMode {
     /// No contact.
     #[default]
     Flight,
@@ -16,7 +16,7 @@ pub enum Mode {
     Seated,
 }
 
-impl Mode {
+impl ContactMode {
     /// Short name for tables and traces.
     pub fn name(self) -> &'static str {
         match self {
@@ -101,13 +101,13 @@ pub(crate) enum Phase {
 }
 
 impl Phase {
-    pub(crate) fn mode(self) -> Mode {
+    pub(crate) fn mode(self) -> ContactMode {
         match self {
-            Self::Inside | Self::Beyond => Mode::Flight,
-            Self::Contact(_, Whirl::Still) => Mode::Seated,
-            Self::Contact(Slide::Rolling, _) => Mode::Roll,
-            Self::Contact(Slide::Positive, _) => Mode::SlipPositive,
-            Self::Contact(Slide::Negative, _) => Mode::SlipNegative,
+            Self::Inside | Self::Beyond => ContactMode::Flight,
+            Self::Contact(_, Whirl::Still) => ContactMode::Seated,
+            Self::Contact(Slide::Rolling, _) => ContactMode::Roll,
+            Self::Contact(Slide::Positive, _) => ContactMode::SlipPositive,
+            Self::Contact(Slide::Negative, _) => ContactMode::SlipNegative,
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::machine::params::{
     Change, MachineMagnet, MachineParams, MachinePlane, MachineStart, RigidRotor, Rotor, Support,
 };
 use crate::machine::{Machine, MachineInputs, MachineSnapshot};
-use crate::mode::Mode;
+use crate::mode::ContactMode;
 use crate::params::{ParamError, PlantParams, Start};
 use crate::readout::{Meters, Snapshot, Work};
 
@@ -175,7 +175,7 @@ impl Plant {
     }
 
     /// Mode now.
-    pub fn mode(&self) -> Mode {
+    pub fn mode(&self) -> ContactMode {
         self.machine.mode(0).unwrap_or_default()
     }
 

@@ -1,7 +1,7 @@
 //! What can be read off a run.
 
 use crate::V2;
-use crate::mode::Mode;
+use crate::mode::ContactMode;
 use crate::vector::Body;
 
 /// What can be read off at an instant, SI units.
@@ -22,7 +22,7 @@ pub struct Snapshot {
     /// Spin Ω_i of the race \[rad/s\]; 0 for a bushing.
     pub race_spin_rad_s: f64,
     /// What the rotor does.
-    pub mode: Mode,
+    pub mode: ContactMode,
     /// A of eq. (2.8) \[m\]; negative inside the clearance.
     pub penetration_m: f64,
     /// f_n \[N\]; 0 without contact.

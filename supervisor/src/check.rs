@@ -30,7 +30,7 @@ const BESIDE: [f32; MOST_ROUNDS as usize] = [1.0, 1.13, 0.89, 1.06];
 const LEAST_S: f32 = 0.2;
 const LEAST_TIME: f32 = 63.0;
 /// The stimulus goes with the cube of so many times the window, up to its length; in a window before the others with the eighth power
-/// of the time, so slowly that a force which is told in amperes does not throw the rotor before it is seen to move too far: by so much
+/// of the time, so slowly that a force which is set in amperes does not throw the rotor before it is seen to move too far: by so much
 /// more than so many times what it does of itself \[clearances\]. Then the stimulus is a quarter from there on, so many times at most.
 const STEEP: f32 = 1.5;
 const TOO_FAR: f32 = 0.2;
@@ -159,7 +159,7 @@ impl Check {
         self.0.first().is_none_or(|progress| progress.open)
     }
 
-    /// What a tick is told of a status: until the check has passed it only watches, and a spin that is contradicted is none.
+    /// What a tick sees of a status: until the check has passed it only watches, and a spin that is contradicted is none.
     #[inline]
     pub(crate) fn admitted(&self, status: Status) -> Status {
         self.0
@@ -187,7 +187,7 @@ impl Check {
             Finding::NotYet
         };
         let value = 0.0;
-        cell.put(Checked { finding, value });
+        cell.store(Checked { finding, value });
     }
 
     /// What firmware should add to the force that it asks for next \[caps\].
@@ -371,7 +371,7 @@ impl Progress {
             }
             return;
         } else {
-            self.take(position, spin, seen);
+            self.accumulate(position, spin, seen);
         }
         self.left = self.left.saturating_sub(1);
         if self.left == 0
@@ -383,7 +383,7 @@ impl Progress {
 
     fn conclude(&mut self, checked: Checked, cell: &CheckedCell) {
         self.admit(checked.finding);
-        cell.put(checked);
+        cell.store(checked);
     }
 
     /// How far the rotor may go from where the window began.
@@ -474,7 +474,7 @@ impl Progress {
     }
 
     /// A tick of the window.
-    fn take(&mut self, position: Vec2<f32>, spin: f32, seen: &Seen) {
+    fn accumulate(&mut self, position: Vec2<f32>, spin: f32, seen: &Seen) {
         let weight = self.window() * self.window();
         let away = position - self.from;
         match self.stage {
@@ -715,11 +715,11 @@ impl Progress {
         let reversed =
             stands_out(backward, max(minute, between)) && backward > BACKWARD * BACKWARD * forward;
         // All windows have to say the same.
-        let said = u8::from(unit) + 2 * u8::from(reversed);
+        let signs = u8::from(unit) + 2 * u8::from(reversed);
         self.rounds = if self.stage == SPIN {
-            said
+            signs
         } else {
-            self.rounds & said
+            self.rounds & signs
         };
         if self.stage < LAST_SPIN {
             self.stage += 1;

@@ -92,13 +92,13 @@ impl<S: Scalar> Plane<S> {
         sample: &CoreSample<S>,
         beside: &impl Neighbour<S>,
     ) -> (CoreCommand<S>, Seen) {
-        self.recorder.told(&shared.buffer, sample);
+        self.recorder.push_sample(&shared.buffer, sample);
         let command = self.state.tick(sample, beside, &self.coeffs);
         let seen = (self.recorder).push(shared, sample, &self.state, &command);
         (command, seen)
     }
 
-    /// What the other plane of a rotor is told.
+    /// Inputs for the other plane of a rotor.
     #[inline]
     pub(crate) fn plane_state(&self) -> PlaneState<S> {
         let observer = &self.state.observer;
@@ -213,11 +213,11 @@ impl<S: Scalar> Plane<S> {
     #[inline(never)]
     pub(crate) fn publish<const N: usize>(&self, shared: &Shared<N>, with_units: bool) {
         let units = with_units.then(|| Units::of(&self.coeffs));
-        shared.latest.put(&self.tally(), units.as_ref());
+        shared.latest.publish(&self.tally(), units.as_ref());
     }
 
     /// After a tick: the mode at once, all else when it is its turn. A tick with an event has enough to do: it is the next one
-    /// that publishes what came of it.
+    /// that publishes its outcome.
     #[inline]
     pub(crate) fn publish_in_turn<const N: usize>(
         &mut self,
@@ -225,7 +225,7 @@ impl<S: Scalar> Plane<S> {
         mode: Mode,
         events: Events,
     ) {
-        shared.latest.put_mode(mode);
+        shared.latest.publish_mode(mode);
         if self.recorder.is_published_now(events) {
             self.publish(shared, false);
         }
@@ -302,7 +302,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// What has happened since the supervisor was made, in SI.
     pub fn report(&self) -> Report {
         let plane = &self.plane;
-        let checked = self.shared.checked.get();
+        let checked = self.shared.checked.load();
         plane.tally().report(&Units::of(&plane.coeffs), checked)
     }
 

@@ -153,7 +153,7 @@ impl SelfTest {
                 };
                 sequence = sequence.wrapping_add(1);
                 for (plane, command) in (0..).zip(tick(&sample)) {
-                    result.take(&command);
+                    result.add(&command);
                     if plane == 0 {
                         let [x, y] = command.force;
                         applied = [-x, y];
@@ -166,14 +166,14 @@ impl SelfTest {
         result
     }
 
-    fn take<S: Scalar>(&mut self, command: &CoreCommand<S>) {
+    fn add<S: Scalar>(&mut self, command: &CoreCommand<S>) {
         self.modes |= 1 << (command.mode as u32);
         self.events |= command.events;
         let [force, own] = [command.force, command.own].map(|v| v.map(S::bits));
         let (mode, hint) = (command.mode as u32, command.integrator as u32);
-        let said = [mode, hint, command.limits.bits(), command.events.bits()];
+        let flags = [mode, hint, command.limits.bits(), command.events.bits()];
         let words = (own.into_iter().chain(force)).chain([command.severity.bits()]);
-        for word in words.chain(said) {
+        for word in words.chain(flags) {
             self.hash = (self.hash ^ word).wrapping_mul(0x0100_0193);
         }
     }

@@ -31,7 +31,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         Ok(Self::from_valid(config, [0, 1]))
     }
 
-    /// One for a plane of a rotor, 0 or 1, of which [`crate::RotorCore::new`] has told the configuration.
+    /// One for a plane of a rotor, 0 or 1, of which [`crate::RotorCore::new`] has given the configuration.
     ///
     /// # Errors
     /// The first parameter of `config` that is outside its range.
@@ -289,7 +289,7 @@ impl<S: Scalar, const RECORD: usize> Published<'_, S, RECORD> {
     /// it from the tick after it on. `None` where ticks came in between eight times, which takes
     /// some hundred instructions of this call each; and, asked from what has interrupted a tick, always.
     pub fn report(&self) -> Option<Report> {
-        self.shared.latest.report::<S>(self.shared.checked.get())
+        self.shared.latest.report::<S>(self.shared.checked.load())
     }
 }
 

@@ -46,9 +46,9 @@ impl Browser {
             .args(pages)
             .output()
             .expect("node starts");
-        let said = String::from_utf8_lossy(&driven.stdout);
+        let text = String::from_utf8_lossy(&driven.stdout);
         let error = String::from_utf8_lossy(&driven.stderr);
-        println!("{said}");
-        assert!(driven.status.success(), "{said}\n{error}");
+        println!("{text}");
+        assert!(driven.status.success(), "{text}\n{error}");
     }
 }

@@ -13,7 +13,7 @@ use supervisor::{
 };
 use test_support::in_numbers;
 
-/// A core of any number that is told SI and answers SI, as firmware without floating point would around it.
+/// A core of any number that takes SI and answers SI, as firmware without floating point would around it.
 #[derive(Debug)]
 pub struct Behind<S: Scalar> {
     scaling: Scaling,
@@ -40,7 +40,7 @@ impl<S: Scalar> Supervise for Behind<S> {
     }
 }
 
-/// What a supervisor was told in a closed loop.
+/// Inputs of a supervisor in a closed loop.
 #[derive(Debug, Clone)]
 pub struct Stream {
     /// Plant, control rate and case.
@@ -85,7 +85,7 @@ pub fn record(
             case.scene.planes[0].levitation = Some(tuned);
             case.scene.duration_s = case.scene.duration_s.min(longest_s);
             let config = case.scene.planes[0].supervisor.expect("plants have one");
-            let (supervisor, tape) = recording(&config).expect("valid");
+            let (supervisor, log) = recording(&config).expect("valid");
             let policy = supervised(&case.scene, supervisor).expect("complete");
             // For the stream a run is good up to where it cannot be trusted any further.
             let _ended = run_policy(
@@ -95,12 +95,12 @@ pub fn record(
                 &mut |_| {},
             );
             let scaling = config.scaling();
-            let tape = tape.take();
+            let log = log.take();
             streams.push(Stream {
                 name: format!("{}, {:.0} kHz, {}", plant.name, 1e-3 * rate_hz, case.name),
                 group: case.group,
                 config,
-                samples: tape.iter().map(|(s, _)| scaling.sample(s)).collect(),
+                samples: log.iter().map(|(s, _)| scaling.sample(s)).collect(),
             });
         }
     }

@@ -5,32 +5,32 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use supervisor::{Command, Config, ConfigError, Sample, Supervisor};
 
-/// What a supervisor was told, and what it commanded.
-pub type Tape = Rc<RefCell<Vec<(Sample, Command)>>>;
+/// Inputs of a supervisor, and what it commanded.
+pub type SampleLog = Rc<RefCell<Vec<(Sample, Command)>>>;
 
 #[derive(Debug)]
 struct Recording {
     supervisor: Supervisor<64>,
-    tape: Tape,
+    log: SampleLog,
 }
 
 impl Supervise for Recording {
     fn tick(&mut self, sample: &Sample) -> Command {
         let command = self.supervisor.tick(sample);
-        self.tape.borrow_mut().push((*sample, command));
+        self.log.borrow_mut().push((*sample, command));
         command
     }
 }
 
-/// A supervisor for a closed loop, and its tape.
+/// A supervisor for a closed loop, and its log.
 ///
 /// # Errors
 /// As [`Supervisor::new`].
-pub fn recording(config: &Config) -> Result<(Box<dyn Supervise>, Tape), ConfigError> {
-    let tape = Tape::default();
+pub fn recording(config: &Config) -> Result<(Box<dyn Supervise>, SampleLog), ConfigError> {
+    let log = SampleLog::default();
     let recording = Recording {
         supervisor: Supervisor::new(config)?,
-        tape: Rc::clone(&tape),
+        log: Rc::clone(&log),
     };
-    Ok((Box::new(recording), tape))
+    Ok((Box::new(recording), log))
 }

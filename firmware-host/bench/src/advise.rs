@@ -22,10 +22,10 @@ pub use rotor::RotorAdvice;
 pub use show::text;
 pub use warnings::Warning;
 
-/// Speeds at which the way in a reaction time is told \[m/s\].
+/// Speeds at which the way in a reaction time is given \[m/s\].
 const TYPICAL_SPEEDS_M_S: [f64; 3] = [0.1, 0.3, 1.0];
 
-/// Share of v_lim from which the arrest time is told: at v_lim itself it is without end.
+/// Share of v_lim from which the arrest time is given: at v_lim itself it is without end.
 pub(crate) const ARREST_SHARE: f64 = 0.85;
 
 /// Lag beyond which even a tangential force is worth less than half of itself.

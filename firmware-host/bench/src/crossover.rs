@@ -11,7 +11,7 @@
 //! f̄ = M·f                   M = z^(−n−1)·(1 − λ + λ·(1 − q)/(z − q)),   q = e^(−T/τ),  λ = (τ/T)·(1 − q): (5.6a)
 //! ```
 //!
-//! Of what swings at a frequency that was told the observer takes its own part Q·ν out of the reading, ν being what is left:
+//! Of what swings at a configured frequency the observer takes its own part Q·ν out of the reading, ν being what is left:
 //!
 //! ```text
 //! ν = (y − p⁻)/(1 + Σ Q),   Q = ½·(w·g/(z − w) + w̄·ḡ/(z − w̄)),   w = e^(jω_bT):  (5.7b);   G/(1 + Σ Q) in the place of G
@@ -53,7 +53,7 @@ pub struct SmallSignals {
     input: Vector3<f64>,
     law: RowVector3<f64>,
     gains: Vector3<f64>,
-    /// w and g of the bending modes that were told and are kept apart.
+    /// w and g of the configured bending modes that are kept apart.
     kept_apart: [Option<[C; 2]>; 2],
     period_s: f64,
     lag_s: f64,

@@ -485,7 +485,7 @@ mod tests {
         }
     }
 
-    /// Rows of 20 kHz from some time on, a tenth of them missing: to be told where the file holds times finely enough.
+    /// Rows of 20 kHz from some time on, a tenth of them missing: to be detected where the file holds times finely enough.
     #[test]
     fn rows_that_are_missing_show_at_any_time() {
         let from = |first_s: f64| -> Vec<f64> {

@@ -170,7 +170,7 @@ pub struct Analysis {
     pub unbalance_response: Vec<Response>,
     /// Rates at which unstable motions grow at the highest spin \[1/s\].
     pub growth_1_s: Vec<f64>,
-    /// Spin of the scene \[rad/s\], at which shapes, whirl and the loop are told.
+    /// Spin of the scene \[rad/s\], at which shapes, whirl and the loop are given.
     pub spin_rad_s: f64,
     /// Places of the shapes, from the centre of mass \[m\].
     pub shape_positions_m: Vec<f64>,
@@ -194,7 +194,7 @@ pub enum AnalysisError {
     Loop(#[from] NoLoop),
 }
 
-/// What is told of a rotor, however it is held.
+/// What is reported of a rotor, however it is held.
 struct Found {
     /// At each spin of the range.
     modes: Vec<Vec<MachineMode>>,
@@ -261,7 +261,7 @@ impl Found {
             shapes,
             levitation: Some(LoopAnalysis {
                 stable,
-                loop_modes: linear_loop::told(&at_spin),
+                loop_modes: linear_loop::oscillating(&at_spin),
                 sensitivity: match stable {
                     true => closed.sensitivity_peaks(&at_spin),
                     false => Vec::new(),
@@ -387,7 +387,7 @@ impl Analysis {
     }
 }
 
-/// All places at which something acts or is read, or a shape is told, from left to right.
+/// All places at which something acts or is read, or a shape is given, from left to right.
 fn places(params: &MachineParams) -> Vec<f64> {
     let bending = params.rotor.bending().iter();
     let mut all: Vec<f64> = bending

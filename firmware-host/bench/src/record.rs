@@ -6,10 +6,10 @@ pub mod file;
 mod flights;
 pub mod identify;
 mod motion;
+pub mod narrative;
 pub mod remaining;
 pub mod replay;
 pub mod shapes;
-pub mod story;
 pub mod ticks;
 pub mod unknown;
 

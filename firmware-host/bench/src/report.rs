@@ -6,7 +6,6 @@ pub mod campbell;
 pub mod commission;
 mod data;
 mod document;
-pub mod drawn;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod happenings;
@@ -20,6 +19,7 @@ mod panels;
 pub mod plot;
 mod quantities;
 pub mod record;
+pub mod rendered;
 mod slow_track;
 pub mod summary;
 pub mod table;
@@ -79,7 +79,7 @@ fn html_of_a_plane(
         headline: headline(&concluded),
         story: scene.story.clone(),
         facts: facts(scene),
-        points: disturbances_told(&scene.disturbances),
+        points: disturbance_lines(&scene.disturbances),
         warnings: warnings(&scene.warnings, results),
     };
     let mut document = Document::begun(&head);
@@ -152,7 +152,7 @@ fn warnings(of_scene: &[String], results: &Results) -> Vec<String> {
 }
 
 /// A line each, of many the first.
-fn disturbances_told(all: &[Disturbed]) -> Vec<String> {
+fn disturbance_lines(all: &[Disturbed]) -> Vec<String> {
     const SHOWN: usize = 20;
     if all.is_empty() {
         return vec!["No external loads, outages or sensor faults.".to_owned()];

@@ -88,8 +88,8 @@ pub struct Scene {
     pub spin_sensor: SpinSensorParams,
     /// The levitation controller, where one holds the whole rotor; else each plane has its own.
     pub levitation: Option<WholeLevitationParams>,
-    /// The rotor as its supervisor is told it, where that is another than it is.
-    pub told: Option<Shaft>,
+    /// The rotor as its supervisor is configured, where that is another than it is.
+    pub configured_shaft: Option<Shaft>,
     /// What is allowed and yet unlikely to be meant, with file and line.
     pub warnings: Vec<String>,
 }
@@ -163,7 +163,7 @@ impl PlaneScene {
             .fold(V2::zeros(), |from_m, s| s.reference_m(from_m, t_s))
     }
 
-    /// Whether the supervisor is told at a time that the rotor is set down.
+    /// Whether the supervisor is informed at a time that the rotor is set down.
     pub fn set_down_announced(&self, t_s: f64) -> bool {
         let mut begun = self.set_downs.iter().filter(|s| s.start_s <= t_s);
         begun.next_back().is_some_and(|s| s.announced)

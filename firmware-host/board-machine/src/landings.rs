@@ -6,47 +6,47 @@ use supervisor::{LEDGER_BYTES, Ledger, LedgerError, Record};
 /// Words of a copy.
 const WORDS: usize = LEDGER_BYTES / 4;
 /// Words of both copies.
-pub const KEPT_WORDS: usize = 2 * WORDS;
+pub const RETAINED_WORDS: usize = 2 * WORDS;
 
 /// What a board says where the ledger was blank, or one of its copies is not whole.
 pub const MISSING: &[u8] = b"ledger of landings: landings may be missing in it\n";
 /// What it says where there is none.
 pub const NOT_COUNTED: &[u8] = b"ledger of landings: not whole, landings are not counted\n";
 
-/// Memory of [`KEPT_WORDS`] words that outlive a reset; a word is written whole or not at all.
-pub trait Kept {
+/// Memory of [`RETAINED_WORDS`] words that outlive a reset; a word is written whole or not at all.
+pub trait RetainedMemory {
     /// What is there.
     fn word(&self, at: usize) -> u32;
     /// Something else from now on.
-    fn put(&mut self, at: usize, word: u32);
+    fn set_word(&mut self, at: usize, word: u32);
 }
 
 /// What the retainer bearing has borne, and where that is kept.
 pub struct Landings<K> {
-    kept: K,
+    memory: K,
     ledger: Ledger,
 }
 
-impl<K: Kept> Landings<K> {
-    /// At boot, once for each supervisor that is made; and what is to be told of it. Where nothing was ever written a new bearing
+impl<K: RetainedMemory> Landings<K> {
+    /// At boot, once for each supervisor that is made; and what is to be reported of it. Where nothing was ever written a new bearing
     /// is taken to be there, which on a machine is for a service tool to say.
     ///
     /// # Errors
     /// What is wrong where neither copy is whole: what is left is not written over, and landings are not counted.
-    pub fn at_boot(mut kept: K) -> Result<(Self, Option<LedgerError>), LedgerError> {
-        let copies = [0, 1].map(|copy| read(&kept, copy));
+    pub fn at_boot(mut memory: K) -> Result<(Self, Option<LedgerError>), LedgerError> {
+        let copies = [0, 1].map(|copy| read(&memory, copy));
         let [first, second] = &copies;
-        let (ledger, told) = match Ledger::newer([first, second]) {
+        let (ledger, reported) = match Ledger::newer([first, second]) {
             Ok(found) => found,
             Err(LedgerError::Blank) => {
                 let fitted = Ledger::new(1, CONFIG.severity_limit);
-                write(&mut kept, 0, &fitted);
-                write(&mut kept, 1, &fitted);
+                write(&mut memory, 0, &fitted);
+                write(&mut memory, 1, &fitted);
                 (fitted, Some(LedgerError::Blank))
             }
             Err(why) => return Err(why),
         };
-        Ok((Self { kept, ledger }, told))
+        Ok((Self { memory, ledger }, reported))
     }
 
     /// Adds a record, before it is given back, and writes the older of both copies anew: where power fails meanwhile, the other one
@@ -54,7 +54,7 @@ impl<K: Kept> Landings<K> {
     pub fn take_in(&mut self, record: &Record<'_, f32, RECORD>) {
         if self.ledger.take_in(record) {
             let copy = self.ledger.updates as usize & 1;
-            write(&mut self.kept, copy, &self.ledger);
+            write(&mut self.memory, copy, &self.ledger);
         }
     }
 
@@ -64,20 +64,20 @@ impl<K: Kept> Landings<K> {
     }
 }
 
-fn read(kept: &impl Kept, copy: usize) -> [u8; LEDGER_BYTES] {
+fn read(memory: &impl RetainedMemory, copy: usize) -> [u8; LEDGER_BYTES] {
     let mut bytes = [0; LEDGER_BYTES];
     let (places, _) = bytes.as_chunks_mut::<4>();
     for (at, place) in (copy * WORDS..).zip(places) {
-        *place = kept.word(at).to_le_bytes();
+        *place = memory.word(at).to_le_bytes();
     }
     bytes
 }
 
-fn write(kept: &mut impl Kept, copy: usize, ledger: &Ledger) {
+fn write(memory: &mut impl RetainedMemory, copy: usize, ledger: &Ledger) {
     let bytes = ledger.to_bytes();
     let (words, _) = bytes.as_chunks::<4>();
     for (at, word) in (copy * WORDS..).zip(words) {
-        kept.put(at, u32::from_le_bytes(*word));
+        memory.set_word(at, u32::from_le_bytes(*word));
     }
 }
 
@@ -85,7 +85,7 @@ fn write(kept: &mut impl Kept, copy: usize, ledger: &Ledger) {
 mod tests {
     extern crate std;
 
-    use super::{KEPT_WORDS, Kept, LEDGER_BYTES, Landings, WORDS};
+    use super::{LEDGER_BYTES, Landings, RETAINED_WORDS, RetainedMemory, WORDS};
     use crate::{BEARING, CONFIG, RECORD};
     use std::boxed::Box;
     use std::cell::RefCell;
@@ -93,15 +93,15 @@ mod tests {
 
     /// Registers that a test looks into, and that lose their power after so many writes.
     struct Registers {
-        words: RefCell<[u32; KEPT_WORDS]>,
+        words: RefCell<[u32; RETAINED_WORDS]>,
         left: RefCell<usize>,
     }
 
-    impl Kept for &Registers {
+    impl RetainedMemory for &Registers {
         fn word(&self, at: usize) -> u32 {
             self.words.borrow()[at]
         }
-        fn put(&mut self, at: usize, word: u32) {
+        fn set_word(&mut self, at: usize, word: u32) {
             let mut left = self.left.borrow_mut();
             if *left > 0 {
                 *left -= 1;
@@ -112,7 +112,7 @@ mod tests {
 
     fn registers(fill: u32) -> Registers {
         Registers {
-            words: RefCell::new([fill; KEPT_WORDS]),
+            words: RefCell::new([fill; RETAINED_WORDS]),
             left: RefCell::new(usize::MAX),
         }
     }
@@ -143,8 +143,8 @@ mod tests {
     fn landings_outlive_resets() {
         let registers = registers(0);
         for boot in 0..3_u32 {
-            let (mut landings, told) = Landings::at_boot(&registers).unwrap();
-            assert_eq!(told, (boot == 0).then_some(LedgerError::Blank));
+            let (mut landings, reported) = Landings::at_boot(&registers).unwrap();
+            assert_eq!(reported, (boot == 0).then_some(LedgerError::Blank));
             assert_eq!(landings.ledger().landings, boot);
             landed(&mut landings);
             assert_eq!(landings.ledger().landings, boot + 1);
@@ -159,11 +159,11 @@ mod tests {
             let registers = registers(u32::MAX);
             let (mut landings, _) = Landings::at_boot(&registers).unwrap();
             landed(&mut landings);
-            let (mut landings, told) = Landings::at_boot(&registers).unwrap();
-            assert_eq!(told, None);
+            let (mut landings, reported) = Landings::at_boot(&registers).unwrap();
+            assert_eq!(reported, None);
             *registers.left.borrow_mut() = cut;
             landed(&mut landings);
-            let (landings, told) = Landings::at_boot(&registers).unwrap();
+            let (landings, reported) = Landings::at_boot(&registers).unwrap();
             let whole = cut == WORDS;
             assert_eq!(
                 landings.ledger().landings,
@@ -171,8 +171,8 @@ mod tests {
                 "{cut}"
             );
             // Nothing written, or all of it, leaves both whole. The first word is the same in every ledger.
-            let torn = !whole && told.is_some();
-            assert!(torn || told.is_none(), "{cut}: {told:?}");
+            let torn = !whole && reported.is_some();
+            assert!(torn || reported.is_none(), "{cut}: {reported:?}");
         }
     }
 

@@ -11,7 +11,8 @@ mod scale;
 mod switch;
 
 pub use landings::{
-    KEPT_WORDS, Kept, Landings, MISSING as LANDINGS_MISSING, NOT_COUNTED as LANDINGS_NOT_COUNTED,
+    Landings, MISSING as LANDINGS_MISSING, NOT_COUNTED as LANDINGS_NOT_COUNTED, RETAINED_WORDS,
+    RetainedMemory,
 };
 pub use levitation::Levitation;
 pub use scale::{CURRENT_FULL_SCALE_A, Magnets, SENSOR_RANGE_M, position_m, signed_currents_a};

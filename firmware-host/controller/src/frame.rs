@@ -9,7 +9,7 @@ const MOST: u32 = 1 << 16;
 /// Longest text that is believed.
 const LONGEST_TEXT: usize = 1 << 20;
 
-/// What a controller is told before the first sample.
+/// What a controller is given before the first sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
     /// From one sample to the next \[s\].
@@ -58,12 +58,12 @@ impl Setup {
     pub fn bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let counts = [self.magnet_plane.len(), self.parameters.len()].map(|n| n as u32);
-        put_words(&mut bytes, &[MAGIC, self.sensors]);
-        put_words(&mut bytes, &counts);
-        put_numbers(&mut bytes, &[self.period_s]);
-        put_words(&mut bytes, &self.magnet_plane);
-        put_numbers(&mut bytes, &self.force_max_n);
-        put_numbers(&mut bytes, &self.parameters);
+        push_words(&mut bytes, &[MAGIC, self.sensors]);
+        push_words(&mut bytes, &counts);
+        push_numbers(&mut bytes, &[self.period_s]);
+        push_words(&mut bytes, &self.magnet_plane);
+        push_numbers(&mut bytes, &self.force_max_n);
+        push_numbers(&mut bytes, &self.parameters);
         bytes
     }
 
@@ -89,13 +89,13 @@ impl Setup {
 }
 
 impl Question {
-    /// As bytes, in the place of what is in `bytes`.
-    pub fn put(&self, bytes: &mut Vec<u8>) {
+    /// Encoded, in the place of what is in `bytes`.
+    pub fn encode(&self, bytes: &mut Vec<u8>) {
         bytes.clear();
-        put_numbers(bytes, &[self.t_s, self.spin_rad_s]);
-        put_words(bytes, &[u32::from(self.hold)]);
-        put_words(bytes, &self.sequence);
-        put_numbers(bytes, &self.position_m);
+        push_numbers(bytes, &[self.t_s, self.spin_rad_s]);
+        push_words(bytes, &[u32::from(self.hold)]);
+        push_words(bytes, &self.sequence);
+        push_numbers(bytes, &self.position_m);
     }
 
     /// From whoever sends it, for so many sensors; `None` where nobody does any more.
@@ -129,11 +129,11 @@ impl Answer {
         let mut bytes = Vec::new();
         match self {
             Self::Forces(forces_n) => {
-                put_words(&mut bytes, &[0, 8 * forces_n.len() as u32]);
-                put_numbers(&mut bytes, forces_n);
+                push_words(&mut bytes, &[0, 8 * forces_n.len() as u32]);
+                push_numbers(&mut bytes, forces_n);
             }
             Self::Failed(text) => {
-                put_words(&mut bytes, &[1, text.len() as u32]);
+                push_words(&mut bytes, &[1, text.len() as u32]);
                 bytes.extend_from_slice(text.as_bytes());
             }
         }
@@ -163,11 +163,11 @@ impl Answer {
     }
 }
 
-fn put_words(bytes: &mut Vec<u8>, words: &[u32]) {
+fn push_words(bytes: &mut Vec<u8>, words: &[u32]) {
     bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
 }
 
-fn put_numbers(bytes: &mut Vec<u8>, numbers: &[f64]) {
+fn push_numbers(bytes: &mut Vec<u8>, numbers: &[f64]) {
     bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
 }
 
@@ -209,7 +209,7 @@ mod tests {
             position_m: vec![1e-5, -0.0, 3.0, 4.0, 5.0, f64::MIN_POSITIVE],
         };
         let mut bytes = vec![9; 3];
-        question.put(&mut bytes);
+        question.encode(&mut bytes);
         let stream = &mut &bytes[..];
         assert_eq!(Question::read(stream, 3).unwrap(), Some(question));
         assert_eq!(Question::read(stream, 3).unwrap(), None);
@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(error.kind(), ErrorKind::InvalidData);
         for answer in [[7, 0], [0, 9], [1, u32::MAX]] {
             let mut bytes = Vec::new();
-            put_words(&mut bytes, &answer);
+            push_words(&mut bytes, &answer);
             let error = Answer::read(&mut &bytes[..]).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::InvalidData);
         }

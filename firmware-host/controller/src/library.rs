@@ -79,7 +79,7 @@ impl Controller {
                 *symbol::<Close>(&library, "amb_controller_close")?,
             )
         };
-        let told = CSetup {
+        let given = CSetup {
             period_s: setup.period_s,
             sensors: setup.sensors,
             magnets: setup.magnet_plane.len() as u32,
@@ -90,7 +90,7 @@ impl Controller {
             parameter: setup.parameters.as_ptr(),
         };
         // SAFETY: the pointers are to as many numbers as the header says, which outlive the call.
-        let controller = NonNull::new(unsafe { init(&raw const told) });
+        let controller = NonNull::new(unsafe { init(&raw const given) });
         Ok(Self {
             controller: controller.ok_or("amb_controller_init returned NULL")?,
             step,

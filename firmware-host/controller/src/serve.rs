@@ -10,7 +10,7 @@ use std::path::Path;
 /// Serves the controller in a library to whoever is at the other end of standard input, until there is nobody.
 ///
 /// # Errors
-/// What the system says of the socket; of the controller itself the host is told.
+/// What the system says of the socket; of the controller itself the host gets a message.
 pub fn serve(library: &Path) -> io::Result<()> {
     let mut host = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
     let setup = Setup::read(&mut host)?;

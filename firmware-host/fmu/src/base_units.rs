@@ -1,4 +1,4 @@
-//! Units in the base units of the International System, as the interface wants them told.
+//! Units in the base units of the International System, as the interface wants them.
 
 /// Exponents of kg, m, s, A, K and rad, and how many of them the unit is.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -105,7 +105,7 @@ pub(crate) unsafe fn call(
     let called = catch_unwind(AssertUnwindSafe(|| what(&mut served.instance)));
     let called = called.unwrap_or_else(|panic| {
         let fault = panicked(&*panic);
-        let _said_below = served.instance.fail(fault.text.clone());
+        let _reported_below = served.instance.fail(fault.text.clone());
         Err(fault)
     });
     match called {
@@ -151,7 +151,7 @@ pub(crate) unsafe fn array<'a, T>(pointer: *const T, count: usize) -> Result<&'a
 ///
 /// # Safety
 /// The pointer is null, or points to a place for a value.
-pub(crate) unsafe fn put<T>(pointer: *mut T, value: T) {
+pub(crate) unsafe fn write<T>(pointer: *mut T, value: T) {
     if !pointer.is_null() {
         // SAFETY: not null, and by this function's own condition a place for it.
         unsafe { pointer.write(value) };

@@ -19,7 +19,7 @@ pub(crate) fn description(unit: &Unit, version: Version, token: &str) -> String 
     xml += "  <LogCategories>\n    <Category name=\"logStatusError\" description=\"why a call has failed\"/>\n  </LogCategories>\n";
     let scene = unit.scene();
     let (stop_s, period_s) = (scene.simulated_s(), unit.period_s());
-    put(
+    push(
         &mut xml,
         format_args!(
             "  <DefaultExperiment startTime=\"0.0\" stopTime=\"{stop_s:?}\" stepSize=\"{period_s:?}\"/>\n  <ModelVariables>\n"
@@ -38,7 +38,7 @@ pub(crate) fn description(unit: &Unit, version: Version, token: &str) -> String 
 }
 
 /// Writing to a string cannot fail.
-fn put(xml: &mut String, text: std::fmt::Arguments<'_>) {
+fn push(xml: &mut String, text: std::fmt::Arguments<'_>) {
     let _never_fails = xml.write_fmt(text);
 }
 
@@ -58,7 +58,7 @@ fn head(xml: &mut String, unit: &Unit, version: Version, token: &str) {
         Version::Fmi2 => ("guid", "2.0"),
     };
     let title = escaped(&scene.title);
-    put(
+    push(
         xml,
         format_args!(
             "<fmiModelDescription fmiVersion=\"{number}\" modelName=\"{title}: {name}\" {token_name}=\"{token}\" description=\"{about}\" \
@@ -73,7 +73,7 @@ fn head(xml: &mut String, unit: &Unit, version: Version, token: &str) {
         Version::Fmi3 => format!(" fixedInternalStepSize=\"{:?}\"", unit.period_s()),
         Version::Fmi2 => String::new(),
     };
-    put(
+    push(
         xml,
         format_args!(
             "  <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"{several}\"{fixed}/>\n",
@@ -92,17 +92,17 @@ fn units(xml: &mut String, variables: &[(usize, &Variable)]) {
     *xml += "  <UnitDefinitions>\n";
     for unit in used {
         let Some(base) = base_units(unit) else {
-            put(xml, format_args!("    <Unit name=\"{unit}\"/>\n"));
+            push(xml, format_args!("    <Unit name=\"{unit}\"/>\n"));
             continue;
         };
-        put(xml, format_args!("    <Unit name=\"{unit}\"><BaseUnit"));
+        push(xml, format_args!("    <Unit name=\"{unit}\"><BaseUnit"));
         for (name, exponent) in NAMES.iter().zip(base.exponents) {
             if exponent != 0 {
-                put(xml, format_args!(" {name}=\"{exponent}\""));
+                push(xml, format_args!(" {name}=\"{exponent}\""));
             }
         }
         if base.factor != 1.0 {
-            put(xml, format_args!(" factor=\"{:?}\"", base.factor));
+            push(xml, format_args!(" factor=\"{:?}\"", base.factor));
         }
         *xml += "/></Unit>\n";
     }
@@ -124,11 +124,11 @@ fn types(xml: &mut String, variables: &[(usize, &Variable)], version: Version) {
     for of in used {
         let (name, about) = (of.name, of.about);
         match version {
-            Version::Fmi3 => put(
+            Version::Fmi3 => push(
                 xml,
                 format_args!("    <EnumerationType name=\"{name}\" description=\"{about}\">\n"),
             ),
-            Version::Fmi2 => put(
+            Version::Fmi2 => push(
                 xml,
                 format_args!(
                     "    <SimpleType name=\"{name}\" description=\"{about}\"><Enumeration>\n"
@@ -136,7 +136,7 @@ fn types(xml: &mut String, variables: &[(usize, &Variable)], version: Version) {
             ),
         }
         for (value, item) in of.items.iter().enumerate() {
-            put(
+            push(
                 xml,
                 format_args!("      <Item name=\"{item}\" value=\"{value}\"/>\n"),
             );
@@ -209,7 +209,7 @@ fn variable_3(xml: &mut String, reference: usize, variable: &Variable) {
         Kind::Enumeration(_) => "Enumeration",
     };
     let (causality, variability) = causes(variable);
-    put(
+    push(
         xml,
         format_args!(
             "    <{kind} name=\"{name}\" valueReference=\"{reference}\" causality=\"{causality}\" variability=\"{variability}\"{declared}{unit}{start}{about}/>\n",
@@ -230,7 +230,7 @@ fn variable_2(xml: &mut String, reference: usize, variable: &Variable) {
         Kind::Enumeration(_) => "Enumeration",
     };
     let (causality, variability) = causes(variable);
-    put(
+    push(
         xml,
         format_args!(
             "    <ScalarVariable name=\"{name}\" valueReference=\"{reference}\" causality=\"{causality}\" variability=\"{variability}\"{about}><{kind}{declared}{unit}{start}/></ScalarVariable>\n",
@@ -254,7 +254,7 @@ fn structure(xml: &mut String, variables: &[(usize, &Variable)], version: Versio
         Version::Fmi3 => {
             for element in ["Output", "InitialUnknown"] {
                 for (_, reference) in &outputs {
-                    put(
+                    push(
                         xml,
                         format_args!("    <{element} valueReference=\"{reference}\"/>\n"),
                     );
@@ -263,11 +263,11 @@ fn structure(xml: &mut String, variables: &[(usize, &Variable)], version: Versio
         }
         Version::Fmi2 => {
             for element in ["Outputs", "InitialUnknowns"] {
-                put(xml, format_args!("    <{element}>\n"));
+                push(xml, format_args!("    <{element}>\n"));
                 for (at, _) in &outputs {
-                    put(xml, format_args!("      <Unknown index=\"{at}\"/>\n"));
+                    push(xml, format_args!("      <Unknown index=\"{at}\"/>\n"));
                 }
-                put(xml, format_args!("    </{element}>\n"));
+                push(xml, format_args!("    </{element}>\n"));
             }
         }
     }

@@ -14,7 +14,7 @@
 )]
 
 use crate::boundary::{
-    CATEGORY, Handle, Log, call, free, get_all, instantiate, put, set_all, status, text,
+    CATEGORY, Handle, Log, call, free, get_all, instantiate, set_all, status, text, write,
 };
 use crate::instance::{Fault, Instance};
 use crate::variable::{Kind, Value};
@@ -307,7 +307,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(
     let read = |i: &mut Instance| match (what, i.get(0)?) {
         (LAST_SUCCESSFUL_TIME, Value::Float64(t_s)) => {
             // SAFETY: as the module says.
-            unsafe { put(value, t_s) };
+            unsafe { write(value, t_s) };
             Ok(())
         }
         _ => Err(Fault::error("fmi2GetRealStatus: units have nothing of it")),

@@ -15,7 +15,7 @@
 )]
 
 use crate::boundary::{
-    CATEGORY, Handle, Log, call, free, get_all, instantiate, put, set_all, status, text,
+    CATEGORY, Handle, Log, call, free, get_all, instantiate, set_all, status, text, write,
 };
 use crate::instance::{Fault, Instance, Level};
 use crate::variable::Value;
@@ -147,10 +147,10 @@ pub unsafe extern "C" fn fmi3DoStep(
         let stepped = i.step(current_communication_point, communication_step_size)?;
         // SAFETY: as the module says.
         unsafe {
-            put(event_handling_needed, false);
-            put(terminate_simulation, false);
-            put(early_return, stepped.early);
-            put(last_successful_time, stepped.to_s);
+            write(event_handling_needed, false);
+            write(terminate_simulation, false);
+            write(early_return, stepped.early);
+            write(last_successful_time, stepped.to_s);
         }
         Ok(())
     };

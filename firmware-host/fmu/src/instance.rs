@@ -277,11 +277,11 @@ impl Instance {
         }
     }
 
-    fn expect(&self, state: State, else_said: &str) -> Result<(), Fault> {
+    fn expect(&self, state: State, otherwise: &str) -> Result<(), Fault> {
         self.not_failed()?;
         match self.state == state {
             true => Ok(()),
-            false => Err(Fault::error(else_said)),
+            false => Err(Fault::error(otherwise)),
         }
     }
 

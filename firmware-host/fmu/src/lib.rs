@@ -7,8 +7,8 @@
 //! Unsafe code stands in [`boundary`], [`fmi3`] and [`fmi2`] alone: at the border to C, whose pointers are the importer's
 //! promise. A panic does not cross it: it is a fatal status with its text.
 //!
-//! Files, each importing only from those above it: `variable`, `quantities`, `model`, `parameters`, `said`, `rows`, `plant`, `closed_loop`,
-//! `supervision`, `unit`, `instance`, `base_units`, `description`, `resources`, `bundle`, `boundary`, `fmi3_absent`, `fmi3`, `fmi2`.
+//! Files, each importing only from those above it: `variable`, `quantities`, `model`, `parameters`, `supervisor_outputs`, `rows`,
+//! `plant`, `closed_loop`, `supervision`, `unit`, `instance`, `base_units`, `description`, `resources`, `bundle`, `boundary`, `fmi3_absent`, `fmi3`, `fmi2`.
 
 #![deny(clippy::undocumented_unsafe_blocks, unsafe_op_in_unsafe_fn)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -28,7 +28,7 @@ mod plant;
 mod quantities;
 mod resources;
 mod rows;
-mod said;
 mod supervision;
+mod supervisor_outputs;
 pub mod unit;
 pub mod variable;

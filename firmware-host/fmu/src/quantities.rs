@@ -2,7 +2,7 @@
 
 use crate::variable::Enumeration;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use plant_model::Mode;
+use plant_model::ContactMode;
 
 /// What the rotor does.
 pub(crate) static CONTACT: Enumeration = Enumeration {
@@ -35,13 +35,13 @@ pub(crate) static POLICY: Enumeration = Enumeration {
 };
 
 /// Number of what the rotor does.
-pub(crate) fn contact_number(mode: Mode) -> i64 {
+pub(crate) fn contact_number(mode: ContactMode) -> i64 {
     match mode {
-        Mode::Flight => 0,
-        Mode::SlipPositive => 1,
-        Mode::SlipNegative => 2,
-        Mode::Roll => 3,
-        Mode::Seated => 4,
+        ContactMode::Flight => 0,
+        ContactMode::SlipPositive => 1,
+        ContactMode::SlipNegative => 2,
+        ContactMode::Roll => 3,
+        ContactMode::Seated => 4,
     }
 }
 
@@ -87,11 +87,11 @@ mod tests {
     fn enumerations_have_the_names_of_what_they_number() {
         use supervisor::Mode as S;
         let contact = [
-            Mode::Flight,
-            Mode::SlipPositive,
-            Mode::SlipNegative,
-            Mode::Roll,
-            Mode::Seated,
+            ContactMode::Flight,
+            ContactMode::SlipPositive,
+            ContactMode::SlipNegative,
+            ContactMode::Roll,
+            ContactMode::Seated,
         ];
         for mode in contact {
             assert_eq!(CONTACT.items[contact_number(mode) as usize], mode.name());

@@ -23,7 +23,7 @@ pub(crate) struct Resource {
 pub struct ResourceError {
     /// The file.
     pub path: PathBuf,
-    /// What the system said.
+    /// The system's message.
     pub reason: io::Error,
 }
 
@@ -91,7 +91,7 @@ pub(crate) fn read(folder: &Path, which: Which) -> Result<(Spec, String), String
     Ok((spec, token(which, &all)))
 }
 
-/// What a unit is told from others by: the model, and the digest of its resources and of this program's version.
+/// What distinguishes a unit from others: the model, and the digest of its resources and of this program's version.
 pub(crate) fn token(which: Which, all: &[Resource]) -> String {
     let mut files: Vec<&Resource> = all.iter().collect();
     files.sort_by(|a, b| a.name.cmp(&b.name));

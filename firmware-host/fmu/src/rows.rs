@@ -1,11 +1,11 @@
 //! Outputs of a plane: the columns of its traces, and what firmware sees there.
 
 use crate::quantities::{CONTACT, contact_number, of_plane};
-use crate::said::SAID;
+use crate::supervisor_outputs::TRACE;
 use crate::variable::{Kind, Output, Role, Value, Variable};
 use firmware_bench::run::closed_loop::stepwise::Stepwise;
 use firmware_bench::run::controller::Seen;
-use firmware_bench::run::trace::{Said, TraceRow};
+use firmware_bench::run::trace::{SupervisorTrace, TraceRow};
 use firmware_bench::run::trace_columns::{CODE, Columns, Number};
 
 /// Which of the columns an output is for.
@@ -89,7 +89,7 @@ impl Rows {
             match self.of {
                 Of::Plant => all.extend(SEEN.iter().map(|(n, u, a, k, _)| signal(n, a, u, *k))),
                 Of::ClosedLoop => {
-                    all.extend(SAID.iter().map(|(n, u, a, k, _)| signal(n, a, u, *k)));
+                    all.extend(TRACE.iter().map(|(n, u, a, k, _)| signal(n, a, u, *k)));
                 }
             }
         }
@@ -122,10 +122,10 @@ impl Rows {
             match self.of {
                 Of::Plant => into.extend(SEEN.iter().map(|(.., value)| value(&seen))),
                 Of::ClosedLoop => {
-                    let value = |(.., kind, value): &Output<Said>| {
-                        row.supervisor.map_or(kind.zero(), |said| value(&said))
+                    let value = |(.., kind, value): &Output<SupervisorTrace>| {
+                        row.supervisor.map_or(kind.zero(), |trace| value(&trace))
                     };
-                    into.extend(SAID.iter().map(value));
+                    into.extend(TRACE.iter().map(value));
                 }
             }
         }

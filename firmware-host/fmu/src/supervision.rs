@@ -3,9 +3,9 @@
 use crate::model::{Model, Set};
 use crate::parameters;
 use crate::quantities::{of_plane, split_plane};
-use crate::said::SAID;
+use crate::supervisor_outputs::TRACE;
 use crate::variable::{Kind, Output, Role, Value, Variable};
-use firmware_bench::run::trace::Said;
+use firmware_bench::run::trace::SupervisorTrace;
 use firmware_bench::scene::Scene;
 use supervisor::{
     Command, Config, IntegratorHint, PARAMETERS, RotorSupervisor, Sample, Status, Supervisor,
@@ -99,7 +99,7 @@ pub(crate) fn variables(scene: &Scene) -> Vec<Variable> {
             Variable::signal(Role::Output, name, about, unit, kind)
         };
         all.extend(OUTPUTS.iter().map(|(n, u, a, k, _)| output((n, u, a, *k))));
-        all.extend(SAID.iter().map(|(n, u, a, k, _)| output((n, u, a, *k))));
+        all.extend(TRACE.iter().map(|(n, u, a, k, _)| output((n, u, a, *k))));
     }
     all
 }
@@ -193,8 +193,8 @@ impl Model for Supervision {
         for command in &self.commands {
             into.extend(OUTPUTS.iter().map(|(.., value)| value(command)));
             // No output says what the levitation controller asked for: that is an input.
-            let said = Said::new(command, [0.0; 2]);
-            into.extend(SAID.iter().map(|(.., value)| value(&said)));
+            let trace = SupervisorTrace::new(command, [0.0; 2]);
+            into.extend(TRACE.iter().map(|(.., value)| value(&trace)));
         }
     }
 

@@ -32,7 +32,7 @@ pub trait Ticked: Sized {
     const RAM_BYTES: usize;
     /// One tick with the recorder's part, as firmware calls it.
     const TICK: fn(&mut Self, &Self::Sample) -> Self::Command;
-    /// What it is told.
+    /// Its samples.
     type Sample;
     /// What it commands.
     type Command: Default;

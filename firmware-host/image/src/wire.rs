@@ -39,20 +39,20 @@ pub struct Segment {
     pub ticks: u32,
 }
 
-/// Puts values one after the other. What does not fit is dropped, which the constants above rule out.
+/// Writes values one after the other. What does not fit is dropped, which the constants above rule out.
 struct Writer<'a> {
     rest: &'a mut [u8],
 }
 
 impl Writer<'_> {
-    fn put<const N: usize>(&mut self, bytes: [u8; N]) {
+    fn write<const N: usize>(&mut self, bytes: [u8; N]) {
         if let Some((head, rest)) = core::mem::take(&mut self.rest).split_first_chunk_mut() {
             *head = bytes;
             self.rest = rest;
         }
     }
     fn word(&mut self, value: u32) {
-        self.put(value.to_le_bytes());
+        self.write(value.to_le_bytes());
     }
     fn pair(&mut self, [x, y]: [u32; 2]) {
         self.word(x);
@@ -60,13 +60,13 @@ impl Writer<'_> {
     }
 }
 
-/// Takes them back; zero beyond the end, which the constants above rule out.
+/// Reads them back; zero beyond the end, which the constants above rule out.
 struct Reader<'a> {
     rest: &'a [u8],
 }
 
 impl Reader<'_> {
-    fn take<const N: usize>(&mut self) -> [u8; N] {
+    fn read<const N: usize>(&mut self) -> [u8; N] {
         let Some((head, rest)) = self.rest.split_first_chunk() else {
             return [0; N];
         };
@@ -74,14 +74,14 @@ impl Reader<'_> {
         *head
     }
     fn word(&mut self) -> u32 {
-        u32::from_le_bytes(self.take())
+        u32::from_le_bytes(self.read())
     }
     fn pair(&mut self) -> [u32; 2] {
         let x = self.word();
         [x, self.word()]
     }
     fn byte(&mut self) -> u8 {
-        let [byte] = self.take();
+        let [byte] = self.read();
         byte
     }
 }
@@ -202,7 +202,7 @@ pub fn core_command_bits(command: &CoreCommand<Q>) -> CommandBits {
 }
 
 /// A sample as bytes.
-pub fn put_sample(sample: &SampleBits, bytes: &mut [u8; SAMPLE_BYTES]) {
+pub fn encode_sample(sample: &SampleBits, bytes: &mut [u8; SAMPLE_BYTES]) {
     let CoreSample {
         sequence,
         status,
@@ -234,7 +234,7 @@ pub fn sample_of(bytes: &[u8; SAMPLE_BYTES]) -> SampleBits {
 }
 
 /// A command as bytes.
-pub fn put_command(command: &CommandBits, bytes: &mut [u8; COMMAND_BYTES]) {
+pub fn encode_command(command: &CommandBits, bytes: &mut [u8; COMMAND_BYTES]) {
     let CoreCommand {
         force,
         own,
@@ -250,8 +250,8 @@ pub fn put_command(command: &CommandBits, bytes: &mut [u8; COMMAND_BYTES]) {
     writer.word(limits.bits());
     writer.word(events.bits());
     writer.word(severity);
-    writer.put([mode as u8]);
-    writer.put([integrator as u8]);
+    writer.write([mode as u8]);
+    writer.write([integrator as u8]);
 }
 
 /// The command of these bytes; `None` where they are none.
@@ -290,7 +290,7 @@ pub fn mode_of(number: u8) -> Option<Mode> {
 }
 
 /// A configuration as bytes.
-pub fn put_config(config: &Config, bytes: &mut [u8; CONFIG_BYTES]) {
+pub fn encode_config(config: &Config, bytes: &mut [u8; CONFIG_BYTES]) {
     let mut writer = Writer { rest: bytes };
     for value in config.values() {
         writer.word(value.to_bits());
@@ -304,24 +304,24 @@ pub fn config_of(bytes: &[u8; CONFIG_BYTES]) -> Config {
 }
 
 /// A header as bytes.
-pub fn put_header(header: Header, bytes: &mut [u8; HEADER_BYTES]) {
+pub fn encode_header(header: Header, bytes: &mut [u8; HEADER_BYTES]) {
     let mut writer = Writer { rest: bytes };
-    writer.put(MAGIC);
+    writer.write(MAGIC);
     writer.word(header.segments);
 }
 
 /// The header of these bytes; `None` where they begin no stream of this layout.
 pub fn header_of(bytes: &[u8; HEADER_BYTES]) -> Option<Header> {
     let mut reader = Reader { rest: bytes };
-    (reader.take() == MAGIC).then(|| Header {
+    (reader.read() == MAGIC).then(|| Header {
         segments: reader.word(),
     })
 }
 
 /// The beginning of a segment as bytes.
-pub fn put_segment(segment: &Segment, bytes: &mut [u8; SEGMENT_BYTES]) {
+pub fn encode_segment(segment: &Segment, bytes: &mut [u8; SEGMENT_BYTES]) {
     if let Some((config, rest)) = bytes.split_first_chunk_mut() {
-        put_config(&segment.config, config);
+        encode_config(&segment.config, config);
         Writer { rest }.word(segment.ticks);
     }
 }

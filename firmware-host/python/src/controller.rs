@@ -109,7 +109,7 @@ impl Make for Maker {
 
 impl Maker {
     fn made(&self, py: Python<'_>, setup: &external::Setup) -> PyResult<Controller> {
-        let told = Setup {
+        let given = Setup {
             period_s: setup.period_s,
             sensors: setup.sensors,
             magnets: setup.magnet_plane.len(),
@@ -117,7 +117,7 @@ impl Maker {
             force_max_n: setup.force_max_n.clone(),
             parameters: setup.parameters.clone(),
         };
-        let made = self.make.bind(py).call1((told,))?;
+        let made = self.make.bind(py).call1((given,))?;
         let callable = |name: &str| {
             let found = made.getattr(name).ok();
             found.filter(PyAnyMethods::is_callable).map(Bound::unbind)

@@ -46,12 +46,12 @@ pub(crate) fn of_scene(py: Python<'_>, error: &Scene) -> PyErr {
         Some(help) => format!("{message}\nhelp: {help}"),
         None => message.clone(),
     };
-    let told = SceneError::new_err(text);
-    let value = told.value(py);
+    let error = SceneError::new_err(text);
+    let value = error.value(py);
     let set: PyResult<()> =
         (value.setattr("message", message)).and_then(|()| value.setattr("help", help));
     match set {
-        Ok(()) => told,
+        Ok(()) => error,
         Err(other) => other,
     }
 }

@@ -4,7 +4,7 @@ use crate::config::Config;
 use crate::errors::RecordError;
 use crate::values::python;
 use firmware_bench::record::file::{PlaneRecord, RecordFile};
-use firmware_bench::record::story::Event;
+use firmware_bench::record::narrative::Event;
 use firmware_bench::record::ticks::{Tick, Ticks};
 use firmware_bench::run::trace_table::NameColumn;
 use numpy::PyArray1;
@@ -32,10 +32,10 @@ pub(crate) fn decoded<'py>(py: Python<'py>, bytes: &[u8]) -> PyResult<Bound<'py,
 
 fn event<'py>(py: Python<'py>, event: &Event<'_>) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    let told = event.told();
-    dict.set_item("summary", python(py, &told)?)?;
+    let narrative = event.narrative();
+    dict.set_item("summary", python(py, &narrative)?)?;
     // Without a ledger nothing is used up.
-    dict.set_item("text", told.map(|told| told.paragraph(0.0)))?;
+    dict.set_item("text", narrative.map(|narrative| narrative.paragraph(0.0)))?;
     let replay = event.replay.as_ref();
     dict.set_item("replay", python(py, &replay.ok())?)?;
     dict.set_item("no_replay", replay.err().map(ToString::to_string))?;

@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use crate::table::columns;
 use crate::values::python;
 use firmware_bench::run::closed_loop::{
-    PlaneEnded, Recorders, Rigour, RunError, fits_in_memory, record,
+    Accuracy, PlaneEnded, Recorders, RunError, fits_in_memory, record,
 };
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::supervision::{Supervision, SupervisionCount};
@@ -118,7 +118,7 @@ fn run(scene: &Resolved, kind: PolicyKind, trace: bool) -> Result<Ran, RunError>
             .collect(),
         axis: axis.as_mut().map(|axis| axis as &mut dyn Recorder<AxisRow>),
     };
-    let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {})?;
+    let ended = record(scene, kind, recorders, Accuracy::default(), &mut |_| {})?;
     let figures: Vec<Figures> = ended.iter().map(|(figures, _)| figures.clone()).collect();
     let policy = kind.name();
     let planes = scene.planes.iter().zip(ended.into_iter().zip(listeners));

@@ -12,9 +12,9 @@ use serde_json::Value;
 pub(crate) fn array(name: &str, given: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
     let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = given.extract().map_err(|error| {
         let text = format!("{name}: expected numbers, got {}", shown(given));
-        let told = PyTypeError::new_err(text);
-        told.set_cause(given.py(), Some(error));
-        told
+        let raised = PyTypeError::new_err(text);
+        raised.set_cause(given.py(), Some(error));
+        raised
     })?;
     let view = array.as_array();
     Ok((view.iter().copied().collect(), view.shape().to_vec()))

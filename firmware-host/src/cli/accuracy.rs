@@ -5,7 +5,7 @@ use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::load;
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_studies::accuracy::study::{
     WrongRuns, benchmarks, chapters as chapters_of, measure, page,
 };
@@ -99,6 +99,6 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
     if args.json {
         print(&(json + "\n"))
     } else {
-        tell(&chapters::text(&chapters_of(&found)))
+        print_wrapped(&chapters::text(&chapters_of(&found)))
     }
 }

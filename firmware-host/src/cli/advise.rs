@@ -2,7 +2,7 @@
 
 use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::load;
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_bench::advise::{self, Advice, Language, OutOfRange, RotorAdvice, Warning};
 use firmware_bench::modes::Coupling;
 use firmware_bench::report::campbell;
@@ -248,7 +248,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
             }
         }
         None => {
-            let nominal = told(args, args.numbers.nominal()?.nominal()?);
+            let nominal = with_runout(args, args.numbers.nominal()?.nominal()?);
             if nominal.runout_m.is_some() && nominal.spin_hz.is_none() {
                 return Err(CommandError::Numbers {
                     message: "--runout-m is given without --spin-hz".to_owned(),
@@ -268,7 +268,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
             say_warnings(&advice.warnings);
             print(&listing)
         }
-        None => tell(&advise::text(&advice)),
+        None => print_wrapped(&advise::text(&advice)),
     }
 }
 
@@ -295,7 +295,7 @@ fn listing(args: &AdviseArgs, advice: &Advice, format: Format) -> Result<String,
 }
 
 /// With the runout of the command line.
-fn told(args: &AdviseArgs, nominal: Nominal) -> Nominal {
+fn with_runout(args: &AdviseArgs, nominal: Nominal) -> Nominal {
     Nominal {
         runout_m: args.runout_m.or(nominal.runout_m),
         ..nominal
@@ -316,7 +316,7 @@ fn of_plane(
     }
     Advice::of_plane(
         title,
-        &told(args, plane.nominal),
+        &with_runout(args, plane.nominal),
         &plane.decided,
         &plane.overrides,
     )
@@ -383,7 +383,7 @@ fn of_machine(
     } else {
         let texts: Vec<String> = all.iter().map(advise::text).collect();
         let rotor = rotor.map_or_else(String::new, |rotor| rotor.text() + "\n");
-        tell(&format!(
+        print_wrapped(&format!(
             "{title}\n{}\n\n{rotor}{}",
             campbell::coupling(&coupling),
             texts.join("\n")

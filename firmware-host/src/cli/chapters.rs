@@ -46,7 +46,7 @@ pub(super) fn of_claims(claims: &[Claim]) -> String {
         lines.add_row([Cell::new(name), right(bound), right(measured), holds]);
     }
     let kept = claims.iter().filter(|claim| claim.holds).count();
-    let told = Tone::of_claim(kept == claims.len())
-        .said(&format!("{kept} of {} claims hold", claims.len()));
-    format!("{lines}\n{told}")
+    let verdict = Tone::of_claim(kept == claims.len())
+        .paint(&format!("{kept} of {} claims hold", claims.len()));
+    format!("{lines}\n{verdict}")
 }

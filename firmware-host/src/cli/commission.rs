@@ -6,7 +6,7 @@ mod show;
 use crate::cli::advise::Format;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::output::OutputError;
-use configured::Machine;
+use configured::Setup;
 use firmware_bench::commission::Commissioned;
 use firmware_bench::commission::log::Log;
 use firmware_bench::commission::record::OfRecord;
@@ -52,7 +52,7 @@ pub struct CommissionArgs {
 /// # Errors
 /// [`CommandError`].
 pub fn execute(args: &CommissionArgs) -> Result<(), CommandError> {
-    let machine = args.machine.as_deref().map(Machine::load).transpose()?;
+    let machine = args.machine.as_deref().map(Setup::load).transpose()?;
     let record = match &args.logs[..] {
         [path] if !LogFile::is_at(path) => record_at(path),
         _ => None,
@@ -107,7 +107,7 @@ fn of_record(args: &CommissionArgs, file: &RecordFile) -> Result<Commissioned, C
     Ok(found)
 }
 
-fn of_logs(args: &CommissionArgs, machine: Option<&Machine>) -> Result<Commissioned, CommandError> {
+fn of_logs(args: &CommissionArgs, machine: Option<&Setup>) -> Result<Commissioned, CommandError> {
     if let Some(logs) = of_both_planes(args, machine)? {
         let of = machine.ok_or_else(without_scene)?;
         if args.walk.is_some() {
@@ -141,7 +141,7 @@ fn of_logs(args: &CommissionArgs, machine: Option<&Machine>) -> Result<Commissio
 /// Logs of both planes, where there are two or one has both.
 fn of_both_planes(
     args: &CommissionArgs,
-    machine: Option<&Machine>,
+    machine: Option<&Setup>,
 ) -> Result<Option<[Log; 2]>, CommandError> {
     if let [first, second] = &args.logs[..] {
         let read = |path: &Path| Log::read(path, &args.column).map_err(|e| refused(path, e));

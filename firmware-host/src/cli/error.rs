@@ -164,7 +164,7 @@ impl CommandError {
 /// JSON for people, indented; `what` is for the error.
 ///
 /// # Errors
-/// What serde said.
+/// serde's message.
 pub(crate) fn pretty(value: &impl Serialize, what: &'static str) -> Result<String, CommandError> {
     serde_json::to_string_pretty(value).map_err(|e| CommandError::other(what, e))
 }
@@ -188,7 +188,7 @@ pub fn explain(error: CommandError) {
 /// Prints a command's result.
 ///
 /// # Errors
-/// What the system said; a reader that has stopped reading is none.
+/// The system's message; a reader that has stopped reading is none.
 pub(crate) fn print(text: &str) -> Result<(), CommandError> {
     match std::io::stdout().write_all(text.as_bytes()) {
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),

@@ -3,7 +3,7 @@
 use crate::cli::chapters;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_studies::campaign::Block;
 use firmware_studies::paired::harm::classes;
 use firmware_studies::paired::plan::{Class, Plan, rows};
@@ -95,7 +95,7 @@ pub fn execute(args: &HarmArgs) -> Result<(), CommandError> {
     let rows = rows(&cases);
     if !args.json {
         let blocks = [table(&rows), Block::List(lists(&rows))];
-        return tell(&chapters::of_blocks(&blocks));
+        return print_wrapped(&chapters::of_blocks(&blocks));
     }
     let value = serde_json::json!({
         "seed": args.seed,

@@ -12,7 +12,7 @@ use crate::cli::output::OutputError;
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::schema::json_schema;
-use firmware_studies::machines::drawn::rule_of_thumb;
+use firmware_studies::machines::random::rule_of_thumb;
 use firmware_studies::overloads::tune::acceptable_near;
 use std::fs::OpenOptions;
 use std::io::{self, IsTerminal, Write};

@@ -3,7 +3,7 @@
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::output::Staging;
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_bench::run::columns::{Cell, Column, Kind};
 use firmware_bench::scene::spec::{Setting, Spec};
 use firmware_bench::sweep::table::{Rows, written};
@@ -141,7 +141,7 @@ pub fn execute(args: &MapArgs) -> Result<(), CommandError> {
     if args.json {
         return print(&(pretty(&done, "formatting what was done")? + "\n"));
     }
-    tell(&format!(
+    print_wrapped(&format!(
         "{}: {}\n{} cells, {} impacts, {} of them side by side, in {:.1} s; {} of {} critical speeds found one by one were the same.\npage: {}\n",
         args.scene.display(),
         [Some(map.headline()), map.doubts()]

@@ -3,7 +3,7 @@
 
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_bench::modes::{Analysis, AnalysisError, Held, Range};
 use firmware_bench::report::campbell;
 use firmware_bench::scene::Scene;
@@ -87,7 +87,7 @@ pub fn execute(args: &ModesArgs) -> Result<(), CommandError> {
     if args.json {
         return print(&(pretty(&analysis, "formatting the modes")? + "\n"));
     }
-    tell(&campbell::text(&scene, &analysis))
+    print_wrapped(&campbell::text(&scene, &analysis))
 }
 
 fn default_hz(scene: &Scene) -> f64 {

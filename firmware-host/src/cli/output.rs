@@ -56,18 +56,18 @@ pub fn clean_up_on_interrupt() {
 
 /// Why results could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write results to {}: {}", path.display(), said(reason))]
+#[error("cannot write results to {}: {}", path.display(), described(reason))]
 pub struct OutputError {
     /// The folder asked for.
     pub path: PathBuf,
-    /// What the system said.
+    /// The system's message.
     pub reason: io::Error,
     /// The option that would name another place; none where that is the argument.
     pub option: Option<&'static str>,
 }
 
 /// The system's word without its number; what has no word of its own, whole.
-fn said(reason: &io::Error) -> String {
+fn described(reason: &io::Error) -> String {
     match reason.kind() {
         io::ErrorKind::Other => reason.to_string(),
         kind => kind.to_string(),

@@ -5,7 +5,7 @@ use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_studies::campaign::{Extent, html};
 use firmware_studies::overloads::page;
 use firmware_studies::overloads::plan::{Catalogue, CatalogueError, Plan, search};
@@ -74,7 +74,7 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
         return print(&format!("{json}\n"));
     }
     let page = out.join("overloads.html");
-    tell(&format!(
+    print_wrapped(&format!(
         "{}\n\n{}page: {}\n",
         promises(&catalogue),
         chapters::text(&page::in_brief(&catalogue)),

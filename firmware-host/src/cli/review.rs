@@ -5,29 +5,29 @@ mod findings;
 mod page;
 mod planes;
 mod tables;
-mod told;
+mod text;
 
 use crate::cli::error::{CommandError, pretty, print};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use again::Again;
 use firmware_bench::log_file::{LogError, LogFile, Renamed};
 use firmware_bench::record::Contact;
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::record::identify::{Findings, Identified};
+use firmware_bench::record::narrative::{Event, Narrative};
 use firmware_bench::record::remaining::{Remaining, ledgers};
 use firmware_bench::record::replay::Replay;
 use firmware_bench::record::shapes::Shapes;
-use firmware_bench::record::story::{Event, Told};
 use firmware_bench::record::ticks::Ticks;
 use firmware_bench::record::unknown::Unknown;
 use firmware_bench::report::table;
-use firmware_bench::run::log_watch::{LogTold, WatchError, watch};
+use firmware_bench::run::log_watch::{LogSummary, WatchError, watch};
 use firmware_bench::scene::spec::{Setting, Spec};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 use tables::csv;
-use told::told;
+use text::text;
 
 /// Arguments of `review`.
 #[derive(Debug, Clone, clap::Args)]
@@ -79,7 +79,7 @@ pub fn execute(args: &ReviewArgs) -> Result<(), CommandError> {
         Some(spec) if LogFile::is_at(&args.file) => {
             let watched =
                 watch(spec, &args.file, &args.column).map_err(|e| not_watched(args, e))?;
-            (watched.records, Some(watched.told))
+            (watched.records, Some(watched.summary))
         }
         None if LogFile::is_at(&args.file) => {
             return Err(CommandError::Numbers {
@@ -136,13 +136,13 @@ fn not_watched(args: &ReviewArgs, error: WatchError) -> CommandError {
 struct Asked<'a> {
     args: &'a ReviewArgs,
     spec: Option<Spec>,
-    log: Option<LogTold>,
+    log: Option<LogSummary>,
 }
 
 /// An event for programs.
 #[derive(Serialize)]
 struct Reviewed {
-    summary: Option<Told>,
+    summary: Option<Narrative>,
     replay: Option<Replay>,
     /// Why there is no replay.
     no_replay: Option<String>,
@@ -181,7 +181,7 @@ struct Plane {
 struct Review<'a> {
     intact: bool,
     /// Of a log what it is; null of a record.
-    log: Option<&'a LogTold>,
+    log: Option<&'a LogSummary>,
     format: u32,
     error: Option<String>,
     #[serde(flatten)]
@@ -224,7 +224,7 @@ fn reviewed(of: &Examined<'_>) -> Reviewed {
     let findings = of.findings.as_ref();
     let again = of.again.as_ref();
     Reviewed {
-        summary: event.told(),
+        summary: event.narrative(),
         replay: event.replay.ok(),
         no_replay: event.replay.err().map(|why| why.to_string()),
         firmware: head.firmware,
@@ -309,9 +309,9 @@ fn of_sections(asked: &Asked<'_>, file: &RecordFile) -> Result<(), CommandError>
     let error = (!file.is_intact()).then(|| damage.join("; "));
     if let Some(out) = &args.out {
         let name = args.file.display().to_string();
-        let log = asked.log.as_ref().map(LogTold::sentences);
+        let log = asked.log.as_ref().map(LogSummary::sentences);
         let head = page::head(&name, (&events, &bearings), (&damage, log));
-        let parts = told::parts(&events, args.scene.is_some());
+        let parts = text::parts(&events, args.scene.is_some());
         page::write(out, (&head, &parts), &page::tracks(&events))?;
     }
     if let Some(folder) = &args.figures {
@@ -346,12 +346,12 @@ fn of_sections(asked: &Asked<'_>, file: &RecordFile) -> Result<(), CommandError>
         }
         print(&out)?;
     } else {
-        let damaged = told::damaged(&damage).map(|said| said + "\n");
-        let told = (events.iter().enumerate())
-            .map(|(i, of)| told(of, args.scene.is_some(), of_event(&bearings, i, &events)));
+        let damaged = text::damaged(&damage).map(|sentence| sentence + "\n");
+        let text = (events.iter().enumerate())
+            .map(|(i, of)| text(of, args.scene.is_some(), of_event(&bearings, i, &events)));
         let log = asked.log.as_ref().map(|log| log.sentences() + "\n");
-        let texts: Vec<String> = log.into_iter().chain(damaged).chain(told).collect();
-        tell(&texts.join("\n"))?;
+        let texts: Vec<String> = log.into_iter().chain(damaged).chain(text).collect();
+        print_wrapped(&texts.join("\n"))?;
     }
     match error {
         None => Ok(()),
@@ -362,7 +362,7 @@ fn of_sections(asked: &Asked<'_>, file: &RecordFile) -> Result<(), CommandError>
     }
 }
 
-/// What is said of the bearings with an event: with the last one alone, after which they are as their ledgers say.
+/// Bearings to report with an event: with the last one alone, after which they are as their ledgers say.
 fn of_event<'a>(
     bearings: &'a [Remaining],
     event: usize,

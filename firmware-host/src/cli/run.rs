@@ -4,7 +4,7 @@ use crate::cli::error::{CommandError, Contradiction, pretty, print};
 use crate::cli::load_changed;
 use crate::cli::output::{self, OutputError, Staging};
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_bench::report::{self, table};
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::run::recording::{TraceFiles, recorded};
@@ -116,7 +116,7 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         print(&ran.verdicts)?;
     } else if !args.quiet {
         let report = out.join("report.html");
-        tell(&format!("{}\nreport: {}\n", ran.table, report.display()))?;
+        print_wrapped(&format!("{}\nreport: {}\n", ran.table, report.display()))?;
     }
     if !ran.untrusted.is_empty() {
         let contradicted = ran.contradictions.iter().map(Contradiction::to_string);
@@ -133,7 +133,7 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
 const MOST_ROWS: f64 = 1e8;
 const BYTES_OF_ROW: f64 = 115.0;
 
-/// What a scene came to, as it is told.
+/// Outcome of a scene, as it is reported.
 struct Ran {
     table: String,
     /// JSON.

@@ -21,7 +21,7 @@ pub fn prepare() {
 ///
 /// # Errors
 /// As of [`print()`].
-pub(crate) fn tell(text: &str) -> Result<(), CommandError> {
+pub(crate) fn print_wrapped(text: &str) -> Result<(), CommandError> {
     // For a terminal alone: what a script reads or searches must not depend on how long a path is.
     if !stdout().is_terminal() {
         return print(text);

@@ -3,10 +3,10 @@
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::table::shown;
-use firmware_bench::run::figures::{Figure, Figures, Place};
+use firmware_bench::run::figures::{Figure, Figures, TableLevel};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{PlaneScene, Scene};
 use firmware_studies::campaign::{Progress, each};
@@ -63,7 +63,7 @@ pub fn execute(args: &SensitivityArgs) -> Result<(), CommandError> {
     }
     let rows = rows(&scene, args)?;
     if !args.json {
-        return tell(&text(&scene, &rows));
+        return print_wrapped(&text(&scene, &rows));
     }
     let value = serde_json::json!({
         "scene": scene.title,
@@ -99,7 +99,7 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
 }
 
 fn text(scene: &Scene, rows: &[Row]) -> String {
-    let columns = || (Figures::ALL.iter()).filter(|figure| figure.place == Place::Everywhere);
+    let columns = || (Figures::ALL.iter()).filter(|figure| figure.place == TableLevel::Everywhere);
     let mut header = vec![Cell::new("configured"), right("engaged")];
     header.extend(columns().map(Figure::title).map(right));
     let mut table = lined(header);

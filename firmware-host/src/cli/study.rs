@@ -4,7 +4,7 @@ use crate::cli::chapters;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_studies::STUDIES;
 use firmware_studies::campaign::{
     Claim, Extent, Machines, OnRecord, Report, Study, StudyError, digest, html,
@@ -138,7 +138,7 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
         print(&(pretty(&measured, "formatting the claims")? + "\n"))?;
     } else {
         let text = chapters::of_claims(&report.claims);
-        tell(&format!("{text}; {} cases, {seconds:.1} s\n", report.cases))?;
+        print_wrapped(&format!("{text}; {} cases, {seconds:.1} s\n", report.cases))?;
     }
     strictly(args.strict, &report)
 }

@@ -6,7 +6,7 @@ mod show;
 use self::shard::Shard;
 use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::progress::{RunProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use crate::cli::warn;
 use firmware_bench::sweep::error::SweepError;
 use firmware_bench::sweep::page::{self, PAGE};
@@ -69,7 +69,7 @@ struct Done {
     worst: Vec<PathBuf>,
 }
 
-/// Runs what is missing of a sweep, and says what came of it.
+/// Runs what is missing of a sweep, and reports its outcome.
 ///
 /// # Errors
 /// [`CommandError`]; what has been done is kept.
@@ -116,7 +116,7 @@ pub fn execute(args: &SweepArgs) -> Result<(), CommandError> {
         done.chunks = Some(chunks);
         return match args.json {
             true => print(&(pretty(&done, FORMATTING)? + "\n")),
-            false => tell(&show::part(&args.sweep, &done, chunks)),
+            false => print_wrapped(&show::part(&args.sweep, &done, chunks)),
         };
     }
     store.tidy()?;
@@ -134,7 +134,7 @@ pub fn execute(args: &SweepArgs) -> Result<(), CommandError> {
         .collect();
     match args.json {
         true => print(&(pretty(&done, FORMATTING)? + "\n"))?,
-        false => tell(&show::all(&plan, &summary, &done))?,
+        false => print_wrapped(&show::all(&plan, &summary, &done))?,
     }
     match summary.failed == plan.runs() * plan.policies().len() as u64 {
         true => Err(CommandError::Untrusted(summary.errors)),

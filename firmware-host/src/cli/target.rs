@@ -4,7 +4,7 @@ mod show;
 
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::progress::{LateProgress, Threads};
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_studies::campaign::Extent;
 use firmware_studies::on_target::machines::{MACHINES, Machine};
 use firmware_studies::on_target::results::Report;
@@ -61,7 +61,7 @@ pub fn execute(args: &TargetArgs) -> Result<(), CommandError> {
     let report = run(args, &machines)?;
     match args.json {
         true => print(&(pretty(&report, "formatting the results")? + "\n"))?,
-        false => tell(&show::text(&report))?,
+        false => print_wrapped(&show::text(&report))?,
     }
     match report.failures() {
         none if none.is_empty() => Ok(()),

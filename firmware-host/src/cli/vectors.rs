@@ -22,7 +22,7 @@ pub struct VectorsArgs {
 pub fn execute(args: &VectorsArgs) -> Result<(), CommandError> {
     probe(&args.out)?;
     let staging = Staging::for_folder(&args.out)?;
-    let mut said = String::new();
+    let mut text = String::new();
     for number in [Number::Float, Number::Fixed] {
         let stream = Stream::record(number, Length::QUICK)
             .map_err(|e| CommandError::other("recording the streams", e))?;
@@ -31,7 +31,7 @@ pub fn execute(args: &VectorsArgs) -> Result<(), CommandError> {
             ["configurations", "ticks"].map(|what| format!("{what}_{name}.csv"));
         staging.write_by(&configurations, |file| stream.write_configurations(file))?;
         staging.write_by(&ticks, |file| stream.write_ticks(file))?;
-        said += &format!(
+        text += &format!(
             "{configurations}, {ticks}: {} ticks in {} pieces, {} of {} ways from mode to mode\n",
             stream.ticks(),
             stream.pieces.len(),
@@ -40,5 +40,5 @@ pub fn execute(args: &VectorsArgs) -> Result<(), CommandError> {
         );
     }
     let folder = staging.publish()?;
-    print(&format!("{said}in {}\n", folder.display()))
+    print(&format!("{text}in {}\n", folder.display()))
 }

@@ -7,7 +7,7 @@ use firmware_bench::device::loads::{self, Disturbance};
 use firmware_bench::scene::Scene;
 use plant_model::machine::{Machine, MachineInputs};
 use plant_model::params::ParamError;
-use plant_model::{Method, Mode, Options, PlantError, V2, Work};
+use plant_model::{ContactMode, Method, Options, PlantError, V2, Work};
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
@@ -102,7 +102,7 @@ pub(crate) struct Ending {
     /// Of each plane.
     pub(crate) positions_m: Vec<V2>,
     /// Each with its plane.
-    pub(crate) modes: Vec<(usize, Mode)>,
+    pub(crate) modes: Vec<(usize, ContactMode)>,
     pub(crate) method: Method,
     work: Work,
 }

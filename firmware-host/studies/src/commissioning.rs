@@ -7,7 +7,7 @@ use crate::campaign::{
     Block, Chapter, Claim, Extent, Machines, Progress, Report, StudyError, run_all,
 };
 use crate::machines::draw::Draw;
-use crate::machines::drawn::Machine;
+use crate::machines::random::RandomMachine;
 use crate::paired::sensors::Sensors;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Supervise, supervised};
@@ -197,7 +197,7 @@ fn inverse(&[[a, b], [c, d]]: &[[f32; 2]; 2]) -> [[f32; 2]; 2] {
     [[d * by, -b * by], [-c * by, a * by]]
 }
 
-/// A supervisor that is told of its machine as firmware with a mistake tells it.
+/// A supervisor that sees its machine through firmware with a mistake.
 #[derive(Debug)]
 struct Mistaken {
     supervisor: Supervisor,
@@ -213,19 +213,19 @@ impl Supervise for Mistaken {
             spin,
             ..
         } = &self.mistake;
-        // What it asks to be added comes to the force as it is told.
+        // What it asks to be added comes to the force as it is reported.
         let mut levitation_n = mapped(force, sample.levitation_n);
         for (sum, more) in levitation_n.iter_mut().zip(self.supervisor.stimulus_n()) {
             *sum += more;
         }
-        let told = Sample {
+        let seen = Sample {
             position_m: mapped(position, sample.position_m),
             levitation_n,
             applied_n: mapped(force, sample.applied_n),
             spin_rad_s: spin * sample.spin_rad_s,
             ..*sample
         };
-        let command = self.supervisor.tick(&told);
+        let command = self.supervisor.tick(&seen);
         let checked = self.supervisor.report().checked;
         if self.found.get().finding == Finding::NotYet {
             self.found.set(checked);
@@ -340,7 +340,7 @@ const SENSORS: [Sensors; 6] = [
 
 /// A machine that levitates for as long as the check takes; and whether its unbalance shows.
 fn scene(seed: u64, number: u64, sensors: Sensors) -> Result<(Scene, bool), String> {
-    let machine = Machine::drawn(seed, number).map_err(|error| error.to_string())?;
+    let machine = RandomMachine::sampled(seed, number).map_err(|error| error.to_string())?;
     let mut draw = Draw::new(seed ^ OF_ROTORS, number);
     let eccentricity_m = machine.clearance_m() * draw.decades(2e-3, 0.05);
     let text = machine.toml.replacen(
@@ -539,7 +539,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
             Chapter::new(
                 "What logs of rotors in two planes tell",
                 vec![
-                    Block::text(of_rotor_logs.story),
+                    Block::text(of_rotor_logs.summary),
                     Block::table(logs::COLUMNS, of_rotor_logs.rows),
                 ],
             ),

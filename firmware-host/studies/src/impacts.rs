@@ -19,7 +19,7 @@ pub(crate) fn run_impacts(
     chunks.into_iter().flatten().collect()
 }
 
-/// [`impact::critical_speeds_m_s`]; `done` is told of how many after each share.
+/// [`impact::critical_speeds_m_s`]; `done` is called with how many after each share.
 pub(crate) fn critical_speeds_m_s(
     cases: &[(PlantParams, Aim)],
     search: &Search,

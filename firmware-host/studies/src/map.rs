@@ -439,7 +439,7 @@ impl Map {
         Page {
             title: label,
             headline: self.headline(),
-            lead: [Some(of), self.spread_said(), self.doubts()]
+            lead: [Some(of), self.spread_text(), self.doubts()]
                 .into_iter()
                 .flatten()
                 .map(Block::text)
@@ -464,7 +464,7 @@ impl Map {
     }
 
     /// What is known within limits only.
-    fn spread_said(&self) -> Option<String> {
+    fn spread_text(&self) -> Option<String> {
         let spread = self.plan.spread.as_ref()?;
         let range = |key: &Varied| format!("{} from {} to {}", key.key, key.from, key.to);
         Some(format!(

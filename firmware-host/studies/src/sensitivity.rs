@@ -3,7 +3,7 @@
 
 pub mod study;
 
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::supervision::SupervisionCount;
 use firmware_bench::scene::nominal::{Override, replaced};
@@ -231,7 +231,7 @@ pub fn configured_right(scene: &Scene) -> Result<Scene, ConfigError> {
     Ok(scene)
 }
 
-/// What came of a run.
+/// Outcome of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// What it was configured with, or that there was none.
@@ -250,7 +250,7 @@ impl Row {
     pub fn of(configured: &str, scene: &Scene, kind: PolicyKind) -> Self {
         let mut counts = vec![SupervisionCount::default(); scene.planes.len()];
         let recorders = Recorders::of_planes(&mut counts);
-        let ran = record(scene, kind, recorders, Rigour::default(), &mut |_| {});
+        let ran = record(scene, kind, recorders, Accuracy::default(), &mut |_| {});
         let (engagements, metrics, error) = match ran {
             Ok(ended) => {
                 let planes: Vec<Figures> = ended.into_iter().map(|(figures, _)| figures).collect();

@@ -49,7 +49,7 @@ impl Trial {
     }
 }
 
-/// What came of scenes with levitation alone, and with the supervisor.
+/// Outcome of scenes with levitation alone, and with the supervisor.
 #[derive(Debug, Clone, Default)]
 pub struct Compared {
     /// Machines that they were run on.
@@ -84,7 +84,7 @@ impl Compared {
         compared
     }
 
-    /// With what came of others.
+    /// With the outcome of others.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
         self.machines += other.machines;

@@ -1,7 +1,7 @@
 //! The catalogue's scenes on machines that nothing was tuned on, by how late their forces come.
 
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
-use crate::machines::drawn::Machine;
+use crate::machines::random::RandomMachine;
 use crate::trials::Compared;
 use firmware_bench::scene::diagnostic::SceneError;
 use std::ops::Range;
@@ -14,7 +14,7 @@ const LATENESS: [Range<f64>; 3] = [0.0..0.4, 0.4..0.8, 0.8..10.0];
 /// # Errors
 /// A machine that is no valid scene: a mistake of the draw.
 fn by_lateness(numbers: Range<u64>, progress: &dyn Progress) -> Result<[Compared; 3], SceneError> {
-    let machines = (numbers.map(Machine::unseen)).collect::<Result<Vec<Machine>, _>>()?;
+    let machines = (numbers.map(RandomMachine::unseen)).collect::<Result<Vec<_>, _>>()?;
     let of_each = run_all(&machines, progress, |machine| match machine.gains() {
         Some(gains) => Compared::on(&machine.plant(), &gains, &machine.text),
         None => Compared::default(),

@@ -328,20 +328,20 @@ mod tests {
     #[test]
     fn values_are_reached_by_their_own_forces() {
         let [coarse, finer] = [[9, 33, 49], [13, 49, 73]].map(|n| BestForce::new(WALL, n));
-        let said = [&coarse, &finer].map(BestForce::hardest_impact);
-        assert!((said[0] / said[1] - 1.0).abs() < 0.03, "{said:?}");
+        let speeds = [&coarse, &finer].map(BestForce::hardest_impact);
+        assert!((speeds[0] / speeds[1] - 1.0).abs() < 0.03, "{speeds:?}");
         let flown = finer.hardest_impact_flown(0.02);
         assert!(
-            (0.95..1.03).contains(&(flown / said[1])),
-            "{flown} {said:?}"
+            (0.95..1.03).contains(&(flown / speeds[1])),
+            "{flown} {speeds:?}"
         );
         // No force at all: impacts take their speed to the limit of whirl.
         let idle = WALL.fastest_whirl_stopped() * (1.0 - 0.7) / (0.15 * 1.7);
-        assert!(said[1] > 1.5 * idle, "{said:?} {idle}");
+        assert!(speeds[1] > 1.5 * idle, "{speeds:?} {idle}");
         let rougher = RigidWall {
             friction: 0.25,
             ..WALL
         };
-        assert!(BestForce::new(rougher, [9, 33, 49]).hardest_impact() < 0.8 * said[0]);
+        assert!(BestForce::new(rougher, [9, 33, 49]).hardest_impact() < 0.8 * speeds[0]);
     }
 }

@@ -1,7 +1,7 @@
 //! Course of a whirl: one run followed from the excitation until the rotor flies free again.
 
 use super::whirl::{WhirlMeter, WhirlReading};
-use crate::mode::Mode;
+use crate::mode::ContactMode;
 use crate::plant::{Inputs, Plant};
 use crate::readout::Snapshot;
 use crate::{PlantError, V2};
@@ -49,7 +49,7 @@ pub struct Sample {
     /// Spin Ω_i of the race \[Hz\]; 0 for a bushing.
     pub race_spin_hz: f64,
     /// What the rotor does.
-    pub mode: Mode,
+    pub mode: ContactMode,
     /// f_n \[N\].
     pub normal_force_n: f64,
     /// Tangential speed of the rotor against the ring, backward positive \[m/s\].

@@ -223,7 +223,7 @@ fn start_of(params: &PlantParams, impact: &Impact) -> Start {
 }
 
 /// Whether a rotor in flight can never reach the wall again (module text). `false` also where that
-/// cannot be told: without a shaft, with overdamped flight, with unbalance at a spin that is not held, with rings
+/// cannot be decided: without a shaft, with overdamped flight, with unbalance at a spin that is not held, with rings
 /// that nothing holds.
 fn stays_free(params: &PlantParams, now: &Snapshot, spin_phase_rad: f64) -> bool {
     let rotor = &params.rotor;

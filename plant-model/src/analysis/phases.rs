@@ -107,7 +107,7 @@ fn top_of_decline(whirl: &[WhirlReading]) -> Option<usize> {
 mod tests {
     use super::*;
     use crate::analysis::course::{Contact, Sample};
-    use crate::{Mode, V2};
+    use crate::{ContactMode, V2};
 
     /// A made-up course: the whirl rises linearly to 700 Hz, stays, and decays exponentially with 20 ms.
     fn course() -> Course {
@@ -118,7 +118,7 @@ mod tests {
             outer_ring_m: V2::zeros(),
             spin_hz: 0.0,
             race_spin_hz: 0.0,
-            mode: Mode::Flight,
+            mode: ContactMode::Flight,
             normal_force_n: 0.0,
             backward_m_s: 0.0,
             sliding_m_s: f64::NAN,

@@ -10,7 +10,7 @@
 
 use super::group::{Accuracy, Event, Group, Pair, Rows};
 use super::number::{Lanes, WIDTH, any};
-use super::roots::first_fall;
+use super::roots::first_crossing;
 use super::step::*;
 use crate::series::{INVERSE, MAX_ORDER};
 
@@ -92,8 +92,8 @@ pub(super) fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, g
 
     let asked = rows.force[0].less(reach(&rows.force, top, theta));
     if any(asked) {
-        let fall = first_fall(&rows.force, (top, theta), &mut rows.guard);
-        theta = fall.take((theta, asked), &mut event, Event::LiftOff);
+        let crossing = first_crossing(&rows.force, (top, theta), &mut rows.guard);
+        theta = crossing.shorten((theta, asked), &mut event, Event::LiftOff);
     }
     if ROLLS {
         for (sign, slips) in [(1.0, true), (-1.0, false)] {
@@ -103,8 +103,8 @@ pub(super) fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, g
             }
             let asked = rows.room[0].less(reach(&rows.room, top, theta));
             if any(asked) {
-                let fall = first_fall(&rows.room, (top, theta), &mut rows.guard);
-                theta = fall.take((theta, asked), &mut event, Event::Slips(slips));
+                let crossing = first_crossing(&rows.room, (top, theta), &mut rows.guard);
+                theta = crossing.shorten((theta, asked), &mut event, Event::Slips(slips));
             }
         }
     } else {
@@ -124,8 +124,8 @@ pub(super) fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, g
                 }
                 rows.room[n] = whirl * group.sign;
             }
-            let fall = first_fall(&rows.room, (order, theta), &mut rows.guard);
-            theta = fall.take((theta, asked), &mut event, Event::Stops);
+            let crossing = first_crossing(&rows.room, (order, theta), &mut rows.guard);
+            theta = crossing.shorten((theta, asked), &mut event, Event::Stops);
         }
     }
     if !ROLLS && group.watched {

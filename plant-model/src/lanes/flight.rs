@@ -7,7 +7,7 @@
 
 use super::group::{Accuracy, Event, Group, Rows};
 use super::number::{Lanes, WIDTH, any, root_of_inverse};
-use super::roots::first_fall;
+use super::roots::first_crossing;
 use super::step::*;
 use crate::series::INVERSE;
 
@@ -62,10 +62,10 @@ pub(super) fn beyond(accuracy: &Accuracy, rows: &mut Rows, group: &mut Group) {
     let mut theta = limit(group, least, order);
     let mut event = [None; WIDTH];
     let all = [true; WIDTH];
-    let fall = first_fall(&rows.room, (top, theta), &mut rows.guard);
-    theta = fall.take((theta, all), &mut event, Event::Returns);
-    let fall = first_fall(&rows.force, (top, theta), &mut rows.guard);
-    theta = fall.take((theta, all), &mut event, Event::Touch);
+    let crossing = first_crossing(&rows.room, (top, theta), &mut rows.guard);
+    theta = crossing.shorten((theta, all), &mut event, Event::Returns);
+    let crossing = first_crossing(&rows.force, (top, theta), &mut rows.guard);
+    theta = crossing.shorten((theta, all), &mut event, Event::Touch);
     finish(rows, group, (order, theta), h);
     group.event = event;
 }

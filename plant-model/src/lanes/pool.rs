@@ -5,7 +5,7 @@ use super::kernel::Task;
 use super::number::WIDTH;
 use super::slot::Slot;
 use super::{Ended, Ending, Launch};
-use crate::integrate::enough::{flight_rtol, highest_order};
+use crate::integrate::order_control::{flight_rtol, highest_order};
 use pulp::Arch;
 
 /// Runs on their way at once: as many in every mode as a step takes, and then some.

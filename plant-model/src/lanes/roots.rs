@@ -14,9 +14,9 @@ use crate::series::{LENGTH, MAX_ORDER};
 
 /// Where guards fall: θ, and whether it is a zero or only the end of what is known to have none.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Fall {
+pub(super) struct ZeroCrossing {
     pub(super) theta: Lanes,
-    pub(super) falls: Mask,
+    pub(super) found: Mask,
 }
 
 /// 1 / C(n, k).
@@ -41,13 +41,13 @@ const HALVINGS: usize = 12;
 const ITERATIONS: usize = 12;
 
 #[inline(always)]
-pub(super) fn first_fall(
+pub(super) fn first_crossing(
     c: &[Lanes; LENGTH],
     (order, end): (usize, Lanes),
     room: &mut [Lanes; LENGTH],
-) -> Fall {
+) -> ZeroCrossing {
     let mut theta = end;
-    let mut falls = [false; WIDTH];
+    let mut found = [false; WIDTH];
     let mut decided = [false; WIDTH];
     let mut guess = [0.0; WIDTH];
     for _ in 0..HALVINGS {
@@ -90,7 +90,7 @@ pub(super) fn first_fall(
             match changes[i] {
                 0 => decided[i] = true,
                 1 => {
-                    (decided[i], falls[i]) = (true, true);
+                    (decided[i], found[i]) = (true, true);
                     guess[i] = places[i] * theta.0[i];
                 }
                 _ => {
@@ -103,15 +103,15 @@ pub(super) fn first_fall(
             break;
         }
     }
-    if !falls.iter().any(|f| *f) {
-        return Fall { theta, falls };
+    if !found.iter().any(|f| *f) {
+        return ZeroCrossing { theta, found };
     }
     let (mut low, mut high, mut now) = (Lanes::all(0.0), theta, theta);
     for i in 0..WIDTH {
-        now.0[i] = if falls[i] { guess[i] } else { theta.0[i] };
+        now.0[i] = if found[i] { guess[i] } else { theta.0[i] };
     }
     // Whatever the others still do, a lane that has settled stays.
-    let mut settled = falls.map(|falls| !falls);
+    let mut settled = found.map(|found| !found);
     for _ in 0..ITERATIONS {
         let (mut value, mut slope) = (c[order], Lanes::all(0.0));
         for c in c[..order].iter().rev() {
@@ -137,5 +137,5 @@ pub(super) fn first_fall(
             break;
         }
     }
-    Fall { theta: now, falls }
+    ZeroCrossing { theta: now, found }
 }

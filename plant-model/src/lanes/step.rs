@@ -2,7 +2,7 @@
 
 use super::group::{Event, Group, Pair, Rows};
 use super::number::{Lanes, Mask, WIDTH, root_of_inverse};
-use super::roots::Fall;
+use super::roots::ZeroCrossing;
 use crate::series::LENGTH;
 
 /// Value at θ.
@@ -40,7 +40,7 @@ pub(super) fn begin(rows: &mut Rows, group: &Group) {
     (rows.cos[0], rows.sin[0]) = (group.direction.x, group.direction.y);
 }
 
-/// θ up to which the series can be trusted: see [`crate::integrate::enough::trusted_theta`].
+/// θ up to which the series can be trusted: see [`crate::integrate::order_control::trusted_theta`].
 #[inline(always)]
 pub(super) fn trusted(rows: &Rows, order: usize, (position, velocity): (Lanes, Lanes)) -> Lanes {
     let mut least = Lanes::all(f64::INFINITY);
@@ -135,10 +135,10 @@ pub(super) fn extend_distance(rows: &mut Rows, n: usize, per: Lanes) {
     rows.distance[n] = (sum + (rows.ux[0] * rows.ux[n] + rows.uy[0] * rows.uy[n])) * per;
 }
 
-impl Fall {
+impl ZeroCrossing {
     /// Shortens the step to this where it is sooner.
     #[inline(always)]
-    pub(super) fn take(
+    pub(super) fn shorten(
         &self,
         (theta, asked): (Lanes, Mask),
         event: &mut [Option<Event>; WIDTH],
@@ -146,10 +146,10 @@ impl Fall {
     ) -> Lanes {
         let mut out = theta;
         for i in 0..WIDTH {
-            let sooner = self.theta.0[i] < theta.0[i] || self.falls[i];
+            let sooner = self.theta.0[i] < theta.0[i] || self.found[i];
             if asked[i] && sooner {
                 out.0[i] = self.theta.0[i];
-                event[i] = self.falls[i].then_some(of);
+                event[i] = self.found[i].then_some(of);
             }
         }
         out

@@ -48,7 +48,7 @@ struct Touch {
     normal_m_s: f64,
     force_n: f64,
     /// What is positive while contact lasts.
-    lift: f64,
+    normal_guard: f64,
     penetration_m: f64,
     whirl_m_s: f64,
     slip_m_s: f64,
@@ -324,7 +324,7 @@ impl Collocation {
         let MachineSeries { rows, parts } = out;
         (parts.step_s, parts.order) = (h, ORDER);
         let mut velocity = y.velocity.clone();
-        of_rows!(&mut *rows, rows => rows.put(0, &y.position, &velocity));
+        of_rows!(&mut *rows, rows => rows.set(0, &y.position, &velocity));
         for k in 0..ORDER {
             velocity.fill(V2::zeros());
             if k < GAUSS {
@@ -335,7 +335,7 @@ impl Collocation {
                     }
                 }
             }
-            of_rows!(&mut *rows, rows => rows.put(k + 1, &[], &velocity));
+            of_rows!(&mut *rows, rows => rows.set(k + 1, &[], &velocity));
         }
         of_rows!(&mut *rows, rows => rows.integrate(ORDER, h));
         self.integrals(&mut parts.spin, y.spin_rad_s, h, |at| at.spin_rate);
@@ -346,17 +346,17 @@ impl Collocation {
                 self.integrals(&mut one, y.magnets[m][axis], h, rate);
                 match law {
                     MagnetLaw::Held => {}
-                    MagnetLaw::Lag(_) => put(&mut parts.magnets[m], axis, &one),
+                    MagnetLaw::Lag(_) => set_axis(&mut parts.magnets[m], axis, &one),
                     MagnetLaw::SecondOrder(..) => {
-                        put(&mut parts.magnets[m], axis, &one);
+                        set_axis(&mut parts.magnets[m], axis, &one);
                         let rate = |at: &Instant| at.slope_rates[m][axis];
                         self.integrals(&mut one, y.magnet_slopes[m][axis], h, rate);
-                        put(&mut parts.currents[m], axis, &one);
+                        set_axis(&mut parts.currents[m], axis, &one);
                     }
                     MagnetLaw::Poles(_) => {
-                        put(&mut parts.currents[m], axis, &one);
+                        set_axis(&mut parts.currents[m], axis, &one);
                         self.through(&mut one, |at| at.magnets_n[m][axis]);
-                        put(&mut parts.magnets[m], axis, &one);
+                        set_axis(&mut parts.magnets[m], axis, &one);
                     }
                 }
             }
@@ -389,14 +389,14 @@ impl Collocation {
                     self.through(&mut one, |at| {
                         at.touches[p].distance_m * at.touches[p].normal[axis]
                     });
-                    put(&mut plane.gap, axis, &one);
+                    set_axis(&mut plane.gap, axis, &one);
                 }
                 self.through(&mut plane.depth, |at| at.touches[p].penetration_m);
             }
             plane.grip = Grip::none(system, p);
             self.through(&mut plane.distance, |at| at.touches[p].distance_m);
             self.through(&mut plane.force, |at| at.touches[p].force_n);
-            self.through(&mut plane.lift, |at| at.touches[p].lift);
+            self.through(&mut plane.normal_guard, |at| at.touches[p].normal_guard);
             self.through(&mut plane.normal_n_m, |at| {
                 per_m(at) * at.touches[p].force_n
             });
@@ -433,7 +433,7 @@ impl Collocation {
     }
 }
 
-fn put(out: &mut Series, axis: usize, one: &Scalar) {
+fn set_axis(out: &mut Series, axis: usize, one: &Scalar) {
     for (c, x) in out.0[..=ORDER].iter_mut().zip(one.0) {
         c[axis] = x;
     }

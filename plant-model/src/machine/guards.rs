@@ -104,10 +104,10 @@ impl Guard {
                 out.0[0] -= data.clearance_m;
             }
             Self::NoForce => {
-                let lift = plane.lift(data);
-                out.combine((-1.0, lift), (0.0, lift), order);
+                let normal_guard = plane.normal_guard(data);
+                out.combine((-1.0, normal_guard), (0.0, normal_guard), order);
             }
-            Self::Normal => return Some(plane.lift(data)),
+            Self::Normal => return Some(plane.normal_guard(data)),
             Self::Slide if slide == Slide::Rolling => {
                 room(out, data.sliding, -1.0, &plane.sliding_n_m);
             }

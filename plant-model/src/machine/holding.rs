@@ -10,7 +10,7 @@ use nalgebra::SMatrix;
 pub(crate) struct Held {
     pub(crate) plane: usize,
     pub(crate) channel: Channel,
-    /// Along t̂, by which the speed is told and the force acts.
+    /// Along t̂, along which the speed is measured and the force acts.
     pub(crate) tangent: V2,
     /// Accelerations of the pairs, of the spin and of the plane's race.
     pub(crate) accelerations: Vec<V2>,

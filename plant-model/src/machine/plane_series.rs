@@ -69,7 +69,7 @@ pub(crate) struct PlaneSeries {
     pub(crate) force: Scalar,
     pub(crate) normal_n_m: Scalar,
     /// What falls through zero where contact of a law that is not linear ends; of collocation alone.
-    pub(crate) lift: Scalar,
+    pub(crate) normal_guard: Scalar,
     /// Parts of τ, and the sum of those that hold.
     pub(crate) sliding_n_m: Scalar,
     pub(crate) rolling_n_m: Scalar,
@@ -136,10 +136,10 @@ impl PlaneSeries {
     }
 
     /// What is positive while contact lasts.
-    pub(crate) fn lift(&self, data: &PlaneData) -> &Scalar {
+    pub(crate) fn normal_guard(&self, data: &PlaneData) -> &Scalar {
         match data.law {
             ContactLaw::Linear(_) => &self.force,
-            ContactLaw::HuntCrossley(_) => &self.lift,
+            ContactLaw::HuntCrossley(_) => &self.normal_guard,
         }
     }
 }

@@ -7,7 +7,7 @@ use super::series::{MachineSeries, Parts};
 use super::system::{MachineInputs, MachineState, MachineSystem, Place};
 use crate::V2;
 use crate::energy::Flows;
-use crate::mode::{Mode, Phase, Slide, Whirl};
+use crate::mode::{ContactMode, Phase, Slide, Whirl};
 use crate::params::ContactLaw;
 use crate::quadrature::{EIGHT, Nodes, SIX};
 use crate::readout::Peaks;
@@ -24,7 +24,7 @@ pub struct PlaneSnapshot {
     /// The ring below that; at rest at zero where there is none.
     pub outer_ring: Body,
     /// What the rotor does here.
-    pub mode: Mode,
+    pub mode: ContactMode,
     /// A of eq. (2.8) \[m\]; negative inside the clearance.
     pub penetration_m: f64,
     /// f_n \[N\]; 0 without contact.

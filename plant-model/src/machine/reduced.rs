@@ -12,7 +12,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 /// M·q̈_y + D·q̇_y − Ω·P·q̇_x + K·q_y = f_y
 /// ```
 ///
-/// The coordinates are anybody's; what they move is told by the displacement at some places along the axis.
+/// The coordinates are anybody's; what they move is given by the displacement at some places along the axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RotorMatrices {
     /// M \[kg\], n × n, symmetric, positive definite.

@@ -202,7 +202,7 @@ impl<const P: usize> Rows<P> {
     }
 
     /// Puts coefficients k.
-    pub(super) fn put(&mut self, k: usize, position: &[V2], velocity: &[V2]) {
+    pub(super) fn set(&mut self, k: usize, position: &[V2], velocity: &[V2]) {
         self.position[k][..position.len()].copy_from_slice(position);
         self.velocity[k][..velocity.len()].copy_from_slice(velocity);
     }

@@ -16,7 +16,7 @@ use crate::V2;
 use crate::energy::Flows;
 use crate::integrate::progress::Progress;
 use crate::integrate::{Method, Options, PlantError};
-use crate::mode::{Mode, Phase, Slide, Whirl};
+use crate::mode::{ContactMode, Phase, Slide, Whirl};
 use crate::params::ParamError;
 use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
@@ -179,7 +179,7 @@ impl Machine {
         if !(t_end_s.is_finite() && finite(&inputs.commands_n) && finite(&inputs.loads_n)) {
             return Err(PlantError::NotFinite { t_s });
         }
-        self.take(inputs);
+        self.apply(inputs);
         let before = self.modes();
         self.warm();
         self.tell(before, on_change);
@@ -203,7 +203,7 @@ impl Machine {
             let begun = self.progress.begin_step(&self.options, self.t_s);
             begun.map_err(|error| self.system.naming_fastest(error))?;
             let free = self.phases.iter().all(|phase| *phase == Phase::Inside);
-            let before: [Mode; MAX_PLANES] = self.modes();
+            let before: [ContactMode; MAX_PLANES] = self.modes();
             let (t_before, moment_s) = (self.t_s, self.system.moment_s(&self.y));
             self.step(t_end_s)?;
             self.check_state()?;
@@ -222,7 +222,7 @@ impl Machine {
     /// Calls for each plane whose mode is another than before.
     fn tell(
         &mut self,
-        before: [Mode; MAX_PLANES],
+        before: [ContactMode; MAX_PLANES],
         on_change: &mut dyn FnMut(usize, &MachineSnapshot),
     ) {
         let after = self.modes();
@@ -234,8 +234,8 @@ impl Machine {
         }
     }
 
-    fn modes(&self) -> [Mode; MAX_PLANES] {
-        let mut modes = [Mode::Flight; MAX_PLANES];
+    fn modes(&self) -> [ContactMode; MAX_PLANES] {
+        let mut modes = [ContactMode::Flight; MAX_PLANES];
         for (mode, phase) in modes.iter_mut().zip(&self.phases) {
             *mode = phase.mode();
         }
@@ -243,7 +243,7 @@ impl Machine {
     }
 
     /// Takes inputs over, and what they push on the coordinates.
-    fn take(&mut self, inputs: &MachineInputs) {
+    fn apply(&mut self, inputs: &MachineInputs) {
         self.forces.copy_from_slice(&self.system.body.gravity);
         for (m, command_n) in inputs.commands_n.iter().enumerate() {
             let (cap, size) = (self.system.caps_n[m], command_n.norm());
@@ -302,7 +302,7 @@ impl Machine {
         let guard = match (phase, guard) {
             (Phase::Contact(..), guard) if guard != Guard::Normal => {
                 let force = self.stepper.series.parts.planes[p]
-                    .lift(&self.system.planes[p])
+                    .normal_guard(&self.system.planes[p])
                     .with_slope(reach.theta, self.stepper.series.parts.order);
                 let rate = force.1 / self.stepper.series.parts.step_s;
                 if force.0 < -rate * moment_s {
@@ -496,7 +496,7 @@ impl Machine {
     }
 
     /// Mode of each plane.
-    pub fn mode(&self, plane: usize) -> Option<Mode> {
+    pub fn mode(&self, plane: usize) -> Option<ContactMode> {
         Some(self.phases.get(plane)?.mode())
     }
 

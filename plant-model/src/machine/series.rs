@@ -15,7 +15,7 @@ use super::poles::MagnetLaw;
 use super::rows::{AnyRows, Pushes, Rows, of_rows};
 use super::system::{Channel, MachineState, MachineSystem, PlaneData, holding_channels};
 use crate::V2;
-use crate::integrate::enough::LOWEST_ORDER;
+use crate::integrate::order_control::LOWEST_ORDER;
 use crate::mode::{Phase, Slide, Whirl};
 use crate::params::{ContactLaw, SlidingFriction};
 use crate::series::{INVERSE, Scalar, Series};
@@ -403,7 +403,7 @@ impl MachineSeries {
         let Self { rows, parts } = self;
         parts.begin(step, y);
         of_rows!(rows, rows => {
-            rows.put(0, &y.position, &y.velocity);
+            rows.set(0, &y.position, &y.velocity);
             parts.fill(rows, step, highest, enough);
         });
         for (p, plane) in parts.planes.iter_mut().enumerate() {

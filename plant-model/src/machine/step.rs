@@ -5,8 +5,8 @@ use super::guards::Guard;
 use super::series::{MachineSeries, Parts, Step};
 use super::system::{MachineState, MachineSystem};
 use crate::V2;
-use crate::integrate::enough::{Enough, flight_rtol, highest_order, trusted_theta};
-use crate::integrate::first_fall::{Fall, first_fall};
+use crate::integrate::first_crossing::{ZeroCrossing, first_crossing};
+use crate::integrate::order_control::{OrderControl, flight_rtol, highest_order, trusted_theta};
 use crate::integrate::{Method, PlantError};
 use crate::mode::Phase;
 use crate::readout::Work;
@@ -176,14 +176,14 @@ impl Stepper {
                     // Whatever rounding says: the contact force has just fallen to zero.
                     let mut over = *over;
                     over.0[..2].iter_mut().for_each(|c| *c = c.max(0.0));
-                    first_fall(&over, theta, order, how)
+                    first_crossing(&over, theta, order, how)
                 } else {
-                    first_fall(over, theta, order, how)
+                    first_crossing(over, theta, order, how)
                 };
                 let (stop, by) = match fall {
-                    Fall::Never => continue,
-                    Fall::At(stop) => (stop, Some((p, *guard))),
-                    Fall::ClearUntil(stop) => (stop, None),
+                    ZeroCrossing::Never => continue,
+                    ZeroCrossing::At(stop) => (stop, Some((p, *guard))),
+                    ZeroCrossing::ClearUntil(stop) => (stop, None),
                 };
                 if stop < theta || (stop == theta && by.is_some()) {
                     (theta, event, whole) = (stop, by, false);
@@ -217,12 +217,12 @@ impl Stepper {
         };
         let mut reference = self.references_s[usize::from(touching)].min(remaining);
         loop {
-            let mut enough = Enough::new(remaining / reference, LAST);
+            let mut orders = OrderControl::new(remaining / reference, LAST);
             self.series.fill(
                 &task.step(system, reference),
                 y,
                 highest,
-                &mut |series, k, rows| enough.with(square(series, k, rows)),
+                &mut |series, k, rows| orders.with(square(series, k, rows)),
             );
             let order = self.series.parts.order;
             work.evaluations += order as u64 + 1;

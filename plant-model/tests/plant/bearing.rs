@@ -36,7 +36,7 @@ fn drag_brakes_a_race_as_its_closed_forms_say() {
     let mut params = seated();
     let run = |params: &MachineParams, t_s: f64| {
         let mut rotor = rotor(params, &lying(), options(Method::Collocation, 1e-11));
-        carry_on(&mut rotor, t_s);
+        advance(&mut rotor, t_s);
         closes("drag", rotor.audit().residual(), 1e-9);
         rotor
     };
@@ -74,7 +74,7 @@ fn a_race_in_bouncing_is_braked_by_its_load() {
         }
         let from = moving([0.2, 0.05], [0.3, 0.0], 400.0);
         let mut rotor = rotor(&params, &from, options(Method::Auto, rtol));
-        carry_on(&mut rotor, 0.02);
+        advance(&mut rotor, 0.02);
         closes("braked", rotor.audit().residual(), 100.0 * rtol);
         assert!(rotor.meters().iter().all(|m| m.impacts > 2));
         rotor
@@ -170,9 +170,9 @@ fn a_clearance_follows_its_heat() {
         closes("heat", rotor.audit().residual(), 1e-8);
         for p in [0, 1] {
             let warmth = rotor.warmth(p).unwrap();
-            let said = PLAY_M + expansion_m_k * warmth.rise_k;
-            near("clearance", warmth.clearance_m, said, 1e-9);
-            assert!((said / PLAY_M - 1.0).abs() > 0.02, "{warmth:?}");
+            let want = PLAY_M + expansion_m_k * warmth.rise_k;
+            near("clearance", warmth.clearance_m, want, 1e-9);
+            assert!((want / PLAY_M - 1.0).abs() > 0.02, "{warmth:?}");
         }
     }
     let mut params = seated();
@@ -183,7 +183,7 @@ fn a_clearance_follows_its_heat() {
     });
     let mut rotor = rotor(&params, &lying(), options(Method::Auto, 1e-11));
     for t_s in [0.1, 0.7, 0.7 + 1e-6] {
-        carry_on(&mut rotor, t_s);
+        advance(&mut rotor, t_s);
     }
     let cooled_k = 50.0 * (-1.5_f64 * 0.7).exp();
     near("rise", rotor.warmth(0).unwrap().rise_k, cooled_k, 1e-9);

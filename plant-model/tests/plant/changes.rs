@@ -74,10 +74,10 @@ fn a_blade_is_lost_while_the_spin_falls() {
             ..spinning(spin)
         };
         let mut rotor = rotor(&params, &from, options(method, 1e-12));
-        carry_on(&mut rotor, lost_s);
+        advance(&mut rotor, lost_s);
         assert_eq!(rotor.axis().centre.position, V2::zeros());
         rotor.change(&adds(place, moment, angle)).unwrap();
-        carry_on(&mut rotor, end_s);
+        advance(&mut rotor, end_s);
         let axis = rotor.axis();
         let is = |what: &str, at: V2, wanted: C, share: f64| {
             let size = wanted.norm();
@@ -148,12 +148,12 @@ fn flight_by_samples_knows_of_a_change() {
     let mut by_samples = rotor(&params, &from, series());
     for tick in 0..3000 {
         change(&mut by_samples, tick);
-        carry_on(&mut by_samples, period_s * f64::from(tick + 1));
+        advance(&mut by_samples, period_s * f64::from(tick + 1));
     }
     // As long as nothing changes in one go, which makes no matrix.
     let mut at_once = rotor(&params, &from, series());
     for tick in [lost, back, 3000] {
-        carry_on(&mut at_once, period_s * f64::from(tick));
+        advance(&mut at_once, period_s * f64::from(tick));
         change(&mut at_once, tick);
     }
     // The matrix was used.
@@ -188,7 +188,7 @@ fn friction_changes_under_the_rotor() {
             rotor.change(&change).unwrap();
         }
         let [before, after] = [1.9, 2.0].map(|settled_s| {
-            carry_on(&mut rotor, from_s + settled_s);
+            advance(&mut rotor, from_s + settled_s);
             rotor.snapshot().spin_rad_s
         });
         let normal_n = 300.0 / (1.0 + mu * mu).sqrt();
@@ -223,7 +223,7 @@ fn changes_that_cannot_be_are_refused() {
     ] {
         assert_eq!(changed.change(&change).unwrap_err().field, field);
     }
-    carry_on(&mut changed, 0.01);
-    carry_on(&mut same, 0.01);
+    advance(&mut changed, 0.01);
+    advance(&mut same, 0.01);
     assert_eq!(changed.snapshot(), same.snapshot());
 }

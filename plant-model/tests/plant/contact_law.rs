@@ -92,7 +92,7 @@ fn a_wall_does_not_pull() {
     let mut run = build(&params, &from, Options::default()).unwrap();
     let mut left = None;
     run.advance(1e-3, &load(V2::new(-5e4, 0.0)), &mut |s| {
-        if s.mode == Mode::Flight {
+        if s.mode == ContactMode::Flight {
             left = left.or(Some(*s));
         }
     })
@@ -143,7 +143,7 @@ fn no_run_is_silently_wrong() {
             .unwrap();
         (plant.snapshot().position_m, modes)
     };
-    let agree = |a: &(V2, Vec<Mode>), b: &(V2, Vec<Mode>)| {
+    let agree = |a: &(V2, Vec<ContactMode>), b: &(V2, Vec<ContactMode>)| {
         a.1 == b.1 && (a.0 - b.0).norm() < 0.5 * params.contact.clearance_m
     };
     let (mut wrong, mut left_out, mut changes) = ([0_u32; 4], 0, 0);

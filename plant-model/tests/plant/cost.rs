@@ -27,8 +27,8 @@ fn with(modes: usize, poles: bool) -> MachineParams {
 
 /// Times real time of levitated flight or of rolling in both planes, from a sample on; `None` where not every one of them is spent
 /// in that mode.
-fn speed(params: &MachineParams, method: Method, mode: Mode) -> Option<f64> {
-    let levitated = mode == Mode::Flight;
+fn speed(params: &MachineParams, method: Method, mode: ContactMode) -> Option<f64> {
+    let levitated = mode == ContactMode::Flight;
     let from = moving([if levitated { 0.01 } else { 0.3 }, 0.0], [0.0; 2], 400.0);
     let mut machine = Machine::new(params, &from, options(method, 1e-9)).unwrap();
     let mut inputs = MachineInputs {
@@ -64,16 +64,16 @@ fn cost_over_degrees_of_freedom() {
     for modes in [0, 1, 2, 4, 6, 8] {
         let [plain, poles] = [false, true].map(|poles| with(modes, poles));
         let row = [
-            speed(&plain, Method::Series, Mode::Flight),
-            speed(&plain, Method::Collocation, Mode::Flight),
-            speed(&poles, Method::Auto, Mode::Flight),
-            speed(&plain, Method::Series, Mode::Roll),
-            speed(&plain, Method::Collocation, Mode::Roll),
+            speed(&plain, Method::Series, ContactMode::Flight),
+            speed(&plain, Method::Collocation, ContactMode::Flight),
+            speed(&poles, Method::Auto, ContactMode::Flight),
+            speed(&plain, Method::Series, ContactMode::Roll),
+            speed(&plain, Method::Collocation, ContactMode::Roll),
         ];
-        let told = row.map(|times| {
+        let cells = row.map(|times| {
             let us = |times| format!("{:.1} µs, {times:.0} ×", 1e6 * PERIOD_S / times);
             times.map_or("–".to_owned(), us)
         });
-        println!("{}: {}", 4 + 2 * modes, told.join(" | "));
+        println!("{}: {}", 4 + 2 * modes, cells.join(" | "));
     }
 }

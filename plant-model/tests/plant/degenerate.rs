@@ -72,7 +72,7 @@ fn in_two_planes(one: &PlantParams) -> MachineParams {
 struct Ran {
     rotor: Machine,
     /// Modes of each plane.
-    changes: Vec<Vec<Mode>>,
+    changes: Vec<Vec<ContactMode>>,
 }
 
 fn ran(params: &MachineParams, method: Method) -> Ran {
@@ -218,7 +218,7 @@ fn struck_beyond_the_centre_of_percussion_the_other_end_rests() {
         &moving([rate * a, 0.0], [rate, 0.0], 400.0),
         series(),
     );
-    carry_on(&mut rotor, 0.2);
+    advance(&mut rotor, 0.2);
 
     let mut one = bouncing(1e8);
     one.rotor.mass_kg = 1.0 / (0.1 + b * b / (10.0 * a * b));
@@ -235,7 +235,7 @@ fn struck_beyond_the_centre_of_percussion_the_other_end_rests() {
     let struck = end.snapshot().position_m;
     close("struck", planes[1].rotor.position, struck, most);
     assert_eq!(rotor.meters()[1].impacts, end.meters().impacts);
-    assert!(rotor.meters()[1].impacts > 1 && planes[0].mode == Mode::Flight);
+    assert!(rotor.meters()[1].impacts > 1 && planes[0].mode == ContactMode::Flight);
 }
 
 /// Stiffer and stiffer in bending a shaft becomes the rigid rotor, at the rate of its compliance 1/ω².
@@ -246,7 +246,7 @@ fn a_stiff_shaft_is_a_rigid_rotor() {
         let mut params = machine();
         params.rotor = of;
         let mut rotor = rotor(&params, &from, series());
-        carry_on(&mut rotor, 3e-3);
+        advance(&mut rotor, 3e-3);
         assert!(rotor.meters()[0].impacts > 0);
         rotor.snapshot().planes().next().unwrap().rotor.position
     };

@@ -65,7 +65,7 @@ fn billiard_keeps_the_product_about_the_foci() {
         let first = product(&plant.snapshot());
         let mut drift = 0.0_f64;
         run(&mut plant, 0.3, &mut |s| {
-            if s.mode == Mode::Flight {
+            if s.mode == ContactMode::Flight {
                 drift = drift.max((product(s) - first).abs());
             }
         });

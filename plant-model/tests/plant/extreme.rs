@@ -61,7 +61,7 @@ fn falling_friction_with_a_tiny_speed_scale_holds_and_breaks_loose() {
         let pressed = |v: f64| start(V2::new(1e-2 + press / k, 0.0), V2::new(0.0, v), 0.0);
         let mut held = plant(&params, &pressed(0.0), method);
         let end = carry(&mut held, 1e-3, V2::new(press, 2.9e3));
-        assert_eq!(end.mode, Mode::Roll);
+        assert_eq!(end.mode, ContactMode::Roll);
         assert!(end.velocity_m_s.norm() <= 1e-12);
 
         let (t, push) = (1e-4, 3.1e3);
@@ -78,7 +78,7 @@ fn falling_friction_with_a_tiny_speed_scale_holds_and_breaks_loose() {
             stuck.get_or_insert((s.t_s, s.mode));
         });
         let (t, mode) = stuck.unwrap();
-        assert_eq!((mode, end.mode), (Mode::Roll, Mode::Roll));
+        assert_eq!((mode, end.mode), (ContactMode::Roll, ContactMode::Roll));
         near("brakes", t, takes_s(v, at_speed * press, fall), 1e-3);
     }
 }
@@ -161,7 +161,7 @@ fn an_elastic_billiard_keeps_time_energy_and_angular_momentum() {
         near("periods", all / period, (touches.len() - 1) as f64, 1e-8);
         let momentum = end.position_m.perp(&end.velocity_m_s);
         near("L", momentum, at.perp(&v), 1e-8);
-        if end.mode == Mode::Flight {
+        if end.mode == ContactMode::Flight {
             near("v", end.velocity_m_s.norm(), v.norm(), 1e-8);
         }
     }

@@ -16,7 +16,7 @@ fn conical_modes_part_with_spin() {
                 ..moving([0.0; 2], [0.0, amplitude * omega], spin)
             };
             let mut rotor = rotor(&params, &from, series());
-            carry_on(&mut rotor, 1.0);
+            advance(&mut rotor, 1.0);
             let at = rotor.snapshot().planes().next().unwrap().rotor.position / -ARM_M;
             // Round-off of some thousand radians.
             close("tilt", at / amplitude, direction(omega), 1e-10);
@@ -34,7 +34,7 @@ fn nutation_follows_the_spin() {
     params.unbalances.clear();
     params.spin = free_spin(0.5, -200.0);
     let mut rotor = rotor(&params, &moving([0.0; 2], [0.01, 0.0], 500.0), series());
-    carry_on(&mut rotor, 0.5);
+    advance(&mut rotor, 0.5);
     let now = rotor.snapshot();
     assert!((now.spin_rad_s - 300.0).abs() < 1e-9);
     let turned = 1.5 * (500.0 * 0.5 - 0.5 * 400.0 * 0.25);
@@ -74,7 +74,7 @@ fn unbalance_gives_its_forced_response() {
             ..MachineStart::default()
         };
         let mut rotor = rotor(&params, &from, series());
-        carry_on(&mut rotor, 1.7);
+        advance(&mut rotor, 1.7);
         let turned = Complex::from_polar(1.0, 1.7 * spin);
         for (plane, position_m) in rotor.snapshot().planes().zip([-0.2, 0.2]) {
             let expected = at((centre + tilt * position_m) * turned);
@@ -182,7 +182,7 @@ fn a_long_flight_is_no_work_limit() {
     let end_s = 2.0 * Options::default().steps_per_sample as f64 / rate;
     let mut plant = build(&params, &from, Options::default()).unwrap();
     run_to(&mut plant, end_s);
-    assert_eq!(plant.snapshot().mode, Mode::Flight);
+    assert_eq!(plant.snapshot().mode, ContactMode::Flight);
     let few = Options {
         steps: 1000,
         ..Options::default()

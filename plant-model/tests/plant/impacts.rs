@@ -56,7 +56,7 @@ fn an_impact_restores_e_at_every_stiffness_and_damping() {
             let t = (CLEARANCE_M - 1e-4) / v + 1.01 * exact.duration_s;
             let end = carry(&mut plant, t, V2::zeros());
             let meters = plant.meters();
-            assert_eq!((meters.impacts, end.mode), (1, Mode::Flight));
+            assert_eq!((meters.impacts, end.mode), (1, ContactMode::Flight));
             near("back", -end.velocity_m_s.x / v, exact.restitution, 2e-9);
             near("e", exact.restitution, e, 1e-8);
             near("duration", meters.contact_time_s, exact.duration_s, 1e-6);
@@ -80,7 +80,7 @@ fn hunt_crossley_impacts_are_those_of_the_closed_forms() {
         let duration = law.undamped_contact_s(v, MASS_KG);
         run_to(&mut plant, 1e-5 / v + 3.0 * duration);
         let (end, meters, audit) = (plant.snapshot(), plant.meters(), plant.audit());
-        assert_eq!((end.mode, meters.impacts), (Mode::Flight, 1));
+        assert_eq!((end.mode, meters.impacts), (ContactMode::Flight, 1));
         let what = format!("n = {n}, λv = {p}");
         let e = -end.velocity_m_s.x / v;
         near(&what, e, restitution_of(p), 1e-9);
@@ -114,7 +114,7 @@ fn a_sliding_impact_turns_by_friction_times_the_normal_impulse() {
             let from = start(V2::new(1.9e-4, 0.0), V2::new(v, 0.0), 250.0);
             let mut plant = plant(&free_mass(law, mu), &from, method);
             let end = carry(&mut plant, 2e-4, V2::zeros());
-            assert_eq!((end.mode, plant.meters().impacts), (Mode::Flight, 1));
+            assert_eq!((end.mode, plant.meters().impacts), (ContactMode::Flight, 1));
             // Curvature: of the order of depth over clearance.
             near("along", end.velocity_m_s.y, -mu * (1.0 + e) * v, 5e-5);
             near("back", end.velocity_m_s.x, -e * v, 5e-5);
@@ -134,7 +134,7 @@ fn a_free_ring_flies_off_with_momentum_kept() {
         let from = start(V2::new(1.9e-4, 0.0), V2::new(v, 0.0), 0.0);
         let mut plant = plant(&params, &from, method);
         let end = carry(&mut plant, 1e-5 / v + 1.5 * lasts_s, V2::zeros());
-        assert_eq!((plant.meters().impacts, end.mode), (1, Mode::Flight));
+        assert_eq!((plant.meters().impacts, end.mode), (1, ContactMode::Flight));
         let change = (1.0 + e) * v * reduced;
         near("rotor", end.velocity_m_s.x, v - change / MASS_KG, 1e-9);
         near("ring", end.inner_ring.velocity.x, change / ring_kg, 1e-8);
@@ -175,7 +175,7 @@ fn friction_at_an_impact_is_mu_times_the_impulse() {
                 let from = start(V2::new(1.9e-4, 0.0), V2::new(v, 0.0), spin);
                 let mut plant = plant(&params, &from, method);
                 let end = carry(&mut plant, 1.5e-3, V2::zeros());
-                assert_eq!((plant.meters().impacts, end.mode), (1, Mode::Flight));
+                assert_eq!((plant.meters().impacts, end.mode), (1, ContactMode::Flight));
                 (end, plant.audit().flows, plant.meters())
             });
             let impulse = flows.normal_impulse_n_s;
@@ -239,7 +239,7 @@ fn a_rotor_released_from_inside_the_wall_leaves_at_its_speed() {
             let mut held = plant(&params, &start(at, V2::zeros(), 0.0), method);
             assert!(held.mode().in_contact());
             let end = carry(&mut held, 1.001 * a / omega, V2::zeros());
-            assert_eq!(end.mode, Mode::Flight);
+            assert_eq!(end.mode, ContactMode::Flight);
             let speed = depth * omega * (-z * a).exp();
             near("speed", end.velocity_m_s.y, speed, 1e-8);
             near("duration", held.meters().contact_time_s, a / omega, 1e-6);
@@ -247,7 +247,7 @@ fn a_rotor_released_from_inside_the_wall_leaves_at_its_speed() {
                 let out = V2::new(0.0, 1.1 * depth * k / law.damping_n_s_m);
                 let mut thrown = plant(&params, &start(at, out, 0.0), method);
                 let end = carry(&mut thrown, 0.5 * depth / out.y, V2::zeros());
-                assert_eq!(end.mode, Mode::Flight);
+                assert_eq!(end.mode, ContactMode::Flight);
                 near("speed", end.velocity_m_s.y, out.y, 1e-15);
                 assert_eq!(thrown.meters().contact_time_s, 0.0);
             }
@@ -302,7 +302,7 @@ fn bounces_under_gravity_shorten_by_e_and_end_at_rest() {
             let mut plant = plant(&params, &start(V2::zeros(), V2::zeros(), 0.0), method);
             let (mut touches, mut leaves) = (Vec::new(), Vec::new());
             let end = carry_with(&mut plant, 0.1, weight, &mut |s| match s.mode {
-                Mode::Flight => leaves.push(s.t_s),
+                ContactMode::Flight => leaves.push(s.t_s),
                 _ if touches.len() == leaves.len() => touches.push(s.t_s),
                 _ => {}
             });
@@ -323,7 +323,7 @@ fn bounces_under_gravity_shorten_by_e_and_end_at_rest() {
             before = Some(offs[0]);
             let total = touches[0] * (1.0 + 2.0 * e / (1.0 - e));
             near("all", *touches.last().unwrap(), total, 1e3 / k.sqrt());
-            assert_eq!(end.mode, Mode::Seated);
+            assert_eq!(end.mode, ContactMode::Seated);
             assert!(end.position_m.x.abs() <= 1e-15 * CLEARANCE_M);
             assert!(end.velocity_m_s.norm() <= 1e-9);
             near("N", end.normal_force_n, -weight.y, 1e-6);

@@ -217,7 +217,7 @@ fn ways_are_the_same() {
                     apart < 200.0 * rtol,
                     "{speed_m_s} m/s at {rtol:e}: {apart:e}"
                 );
-                rolled += usize::from(now.mode == Mode::Roll);
+                rolled += usize::from(now.mode == ContactMode::Roll);
             }
             assert!(rolled > 100, "{rolled} roll");
         }

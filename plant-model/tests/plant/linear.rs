@@ -73,7 +73,7 @@ fn modes_tell_damping_and_instability() {
     }
 }
 
-/// 1/m + z_a·z_b/I_t: none between planes that are each other's centres of percussion. What controllers of one plane are told: a
+/// 1/m + z_a·z_b/I_t: none between planes that are each other's centres of percussion. What controllers of one plane are given: a
 /// struck place moves as 1/(1/m + z²/I_t), and a spring there holds it alone.
 #[test]
 fn planes_feel_each_other_by_their_mobility() {

@@ -6,7 +6,7 @@ use plant_model::machine::reduced::{ReducedRotor, RotorMatrices};
 use std::f64::consts::TAU;
 
 /// Three masses of 2, 5 and 3 kg at 0.1, 0.4 and 0.8 m on a shaft without mass that resists their getting out of line,
-/// told by coordinates that are mixtures of their displacements.
+/// given by coordinates that are mixtures of their displacements.
 fn three_masses() -> RotorMatrices {
     let masses = DMatrix::from_diagonal(&[2.0, 5.0, 3.0].as_slice().to_vec().into());
     // How far the middle one is off the line of the others, and the force of that.

@@ -1,6 +1,7 @@
 //! A retainer ball bearing: the race that the rotor touches spins up, rolls, brakes.
 
 use crate::support::*;
+use plant_model::ContactMode::{Flight, Roll, Seated, SlipPositive};
 
 const LOAD_N: f64 = 500.0;
 const MU: f64 = 0.1;
@@ -60,7 +61,7 @@ fn friction_spins_the_race_up_until_it_rolls() {
         for share in [0.2, 0.5, 0.9] {
             let t_s = share * rolls_s;
             let now = pushed(&mut plant, t_s);
-            assert_eq!(now.mode, Mode::Seated, "{method:?}");
+            assert_eq!(now.mode, Seated, "{method:?}");
             near("race", now.race_spin_rad_s, gain * t_s, 1e-9);
             near("rotor", now.spin_rad_s, spin_rad_s - loss * t_s, 1e-9);
             near("friction", now.sliding_force_n, -friction_n, 1e-9);
@@ -68,7 +69,7 @@ fn friction_spins_the_race_up_until_it_rolls() {
             near("slip", now.sliding_speed_m_s, slip, 1e-8);
         }
         let now = pushed(&mut plant, 3.0 * rolls_s);
-        assert_eq!(now.mode, Mode::Seated);
+        assert_eq!(now.mode, Seated);
         near("rolling race", now.race_spin_rad_s, gain * rolls_s, 1e-9);
         let left = spin_rad_s - loss * rolls_s;
         near("rolling rotor", now.spin_rad_s, left, 1e-9);
@@ -141,7 +142,7 @@ fn drag_keeps_a_rolling_whirl_alive() {
         let mut plant = build(&params, &from, tight(method)).unwrap();
         sampled(&mut plant, 0.1, 1000);
         let now = plant.snapshot();
-        assert_eq!(now.mode, Mode::Roll);
+        assert_eq!(now.mode, Roll);
         near("whirl", now.velocity_m_s.norm(), speed, 1e-8);
         near("friction", now.sliding_force_n, -needed_n, 1e-7);
         near("race", now.race_spin_rad_s, race_rad_s, 1e-8);
@@ -205,7 +206,7 @@ fn methods_agree_and_momentum_of_the_surfaces_stays() {
             closes("hit", plant.audit().residual(), 1e-11);
             snapshots
         });
-        for mode in [Mode::Flight, Mode::SlipPositive, Mode::Roll] {
+        for mode in [Flight, SlipPositive, Roll] {
             assert!(runs[0].iter().any(|s| s.mode == mode), "{mode:?}");
         }
         let apart = farthest(&runs[0], &runs[1]);

@@ -40,7 +40,7 @@ fn run(what: &str, params: &MachineParams, start: &MachineStart, duration_s: f64
     machine
 }
 
-fn modes(machine: &Machine) -> Vec<Mode> {
+fn modes(machine: &Machine) -> Vec<ContactMode> {
     (0..4).map_while(|p| machine.mode(p)).collect()
 }
 
@@ -65,7 +65,7 @@ fn planes() {
     let one_place = changed(|p| p.planes[1] = p.planes[0]);
     let same = run("two planes at one place", &one_place, &struck(400.0), 0.5);
     // What both hold they share equally.
-    assert_eq!(modes(&same), [Mode::Roll; 2]);
+    assert_eq!(modes(&same), [ContactMode::Roll; 2]);
     let [a, b] = [0, 1].map(|p| same.meters()[p].peak_friction_torque_n_m);
     near("shared", a, b, 1e-6);
 
@@ -115,7 +115,7 @@ fn shafts_and_supports() {
 #[test]
 fn drops() {
     let mut rolling = run("a drop at speed", &dropped(|_| {}), &spinning(1500.0), 1.0);
-    assert_eq!(modes(&rolling), [Mode::Roll; 2]);
+    assert_eq!(modes(&rolling), [ContactMode::Roll; 2]);
     assert!(rolling.snapshot().spin_rad_s < 1500.0);
 
     let still = dropped(|p| {
@@ -125,7 +125,7 @@ fn drops() {
         (p.spin, p.unbalances) = (SpinParams::Held, vec![]);
     });
     let still = run("a drop without spin", &still, &spinning(0.0), 2.0);
-    assert_eq!(modes(&still), [Mode::Seated; 2]);
+    assert_eq!(modes(&still), [ContactMode::Seated; 2]);
 
     let leaning = MachineStart {
         tilt_rad: V2::new(1e-4, 0.0),

@@ -1,6 +1,7 @@
 //! Rotors that hardly spin: sliding and rolling friction turn round at the same speed, and round-off decides between modes.
 
 use crate::support::*;
+use plant_model::ContactMode::{Roll, Seated, SlipNegative, SlipPositive};
 
 /// Whatever the start, a rotor that falls under its weight onto the wall, rolls and rests, comes to its end, and its energy adds
 /// up.
@@ -32,7 +33,7 @@ fn a_rotor_that_hardly_spins_comes_to_rest() {
 /// by every method. A load turns away from under the rotor until it slips, swings and rests again.
 #[test]
 fn without_spin_a_rotor_at_rest_begins_to_slip_and_to_whirl_at_once() {
-    for (turn, slip) in [(1.0, Mode::SlipPositive), (-1.0, Mode::SlipNegative)] {
+    for (turn, slip) in [(1.0, SlipPositive), (-1.0, SlipNegative)] {
         for (friction, rolling) in [(0.1, 0.02), (0.02, 0.1), (0.125, 0.125)] {
             let mut params = onset_rig();
             params.rotor.stiffness_n_m = 0.0;
@@ -53,9 +54,9 @@ fn without_spin_a_rotor_at_rest_begins_to_slip_and_to_whirl_at_once() {
                 }
                 modes
             });
-            assert_eq!(modes[..2], [Mode::Seated, slip], "{friction}, {rolling}");
-            assert_eq!(modes.last(), Some(&Mode::Seated), "{friction}, {rolling}");
-            assert!(!modes.contains(&Mode::Roll), "{friction}, {rolling}");
+            assert_eq!(modes[..2], [Seated, slip], "{friction}, {rolling}");
+            assert_eq!(modes.last(), Some(&Seated), "{friction}, {rolling}");
+            assert!(!modes.contains(&Roll), "{friction}, {rolling}");
             assert_eq!(others, modes, "{friction}, {rolling}");
         }
     }

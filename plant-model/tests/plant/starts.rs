@@ -146,7 +146,7 @@ fn a_rotor_parked_on_its_wall_stays_there_or_is_lifted() {
         assert!(rotor.work().steps < 2 * 200, "{angle}: {:?}", rotor.work());
 
         let rotor = started(&held, angle, ON, 200);
-        assert_eq!(rotor.mode(0), Some(Mode::Flight), "{angle}");
+        assert_eq!(rotor.mode(0), Some(ContactMode::Flight), "{angle}");
         assert!(rotor.meters().iter().all(never_touched), "{angle}");
         // 200 rad/s for 2 ms: by 1 − cos 0.4 of the way.
         let left = rotor.axis().centre.position.norm() / CLEARANCE_M;

@@ -15,7 +15,8 @@ pub(crate) use plant_model::machine::params::*;
 pub(crate) use plant_model::machine::{Machine, MachineInputs, MachineSnapshot};
 pub(crate) use plant_model::params::*;
 pub(crate) use plant_model::{
-    BuildError, Inputs, Meters, Method, Mode, Options, Plant, PlantError, Snapshot, V2, build,
+    BuildError, ContactMode, Inputs, Meters, Method, Options, Plant, PlantError, Snapshot, V2,
+    build,
 };
 pub(crate) use plants::*;
 pub(crate) use rotor::*;

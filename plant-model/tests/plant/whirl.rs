@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use nalgebra::Complex;
+use plant_model::ContactMode::{Roll, Seated, SlipNegative, SlipPositive};
 use plant_model::analysis::arrest::{Arrest, circle_radius_m};
 use std::f64::consts::TAU;
 
@@ -79,7 +80,7 @@ fn rolling_whirl_keeps_its_circle_and_counts_its_turns() {
             let mut plant = build(&params, &from, options(method, rtol)).unwrap();
             sampled(&mut plant, t, samples);
             let now = plant.snapshot();
-            assert_eq!(now.mode, Mode::Roll);
+            assert_eq!(now.mode, Roll);
             near("radius", now.position_m.norm(), radius, share);
             near("angle", now.whirl_angle_rad, -v / radius * t, share);
             let off_n = now.sliding_force_n + damping_n_s_m * v;
@@ -105,7 +106,7 @@ fn rolling_goes_on_with_rotor_and_spin_as_one_inertia() {
             let mut plant = plant(&params, &from, method);
             let mut changes = 0;
             let end = carry_with(&mut plant, t, V2::zeros(), &mut |_| changes += 1);
-            assert_eq!((end.mode, changes), (Mode::Roll, 0));
+            assert_eq!((end.mode, changes), (Roll, 0));
             let now = sense * end.contact_tangential_speed_m_s;
             let slip = (now + sense * RADIUS_M * end.spin_rad_s).abs();
             assert!(slip <= 1e-13 * v, "{slip:e}");
@@ -165,7 +166,7 @@ fn a_load_seats_the_rotor_within_the_friction_cones() {
     let force = V2::new(500.0, 0.0);
     plant.advance(0.3, &load(force), &mut |_| {}).unwrap();
     let now = plant.snapshot();
-    assert_eq!(now.mode, Mode::Seated);
+    assert_eq!(now.mode, Seated);
     assert!(now.velocity_m_s.norm() < 1e-9);
     let normal = now.position_m.normalize();
     let left = force - params.rotor.stiffness_n_m * now.position_m;
@@ -192,7 +193,7 @@ fn bouncing_into_rolling_matches_an_independent_solution() {
             .advance(0.2, &Inputs::default(), &mut on_change)
             .unwrap();
         let (t, mode) = *changes.last().unwrap();
-        assert_eq!((changes.len(), mode), (count, Mode::Roll));
+        assert_eq!((changes.len(), mode), (count, Roll));
         assert!((t - last_s).abs() < 1e-12, "{t}");
         close("end", plant.snapshot().position_m, end_m, 3e-10 * 3e-4);
     }
@@ -215,7 +216,7 @@ fn slip_that_reverses_every_microsecond_follows_coulomb() {
             let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
             let t = f64::from(i + 1) * tau;
             end = carry_with(&mut plant, t, V2::new(press, sign * push), &mut |s| {
-                turns += i64::from(matches!(s.mode, Mode::SlipPositive | Mode::SlipNegative));
+                turns += i64::from(matches!(s.mode, SlipPositive | SlipNegative));
             });
             if gain > 0.0 {
                 // Against the push until it stands, then along with it.
@@ -234,7 +235,7 @@ fn slip_that_reverses_every_microsecond_follows_coulomb() {
             let heat = plant.audit().flows.sliding_friction;
             near("heat", heat, mu * press * path, 1e-6);
         } else {
-            assert_eq!((end.mode, turns), (Mode::Roll, 0));
+            assert_eq!((end.mode, turns), (Roll, 0));
             assert!(end.velocity_m_s.norm() <= 1e-12, "{}", end.velocity_m_s);
             assert!(end.position_m.y.abs() <= 1e-15, "{}", end.position_m);
         }

@@ -4,8 +4,8 @@ use crate::calls::ending;
 use crate::code::Code;
 use crate::halves::{self, RECORD, RotorStorage, Storage};
 use crate::layout::defined;
-use crate::pointer::{Argument, Place};
-use crate::storage::{Content, Kept, Lease, Making};
+use crate::pointer::{Argument, OutPtr};
+use crate::storage::{Content, Lease, Making, Slot};
 use crate::structs::{CSection, CStamp};
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -17,7 +17,7 @@ pub type Shelf = MaybeUninit<ArchivePlace<RECORD>>;
 /// What is in an `amb_archive`. It stays where it was made: two that know the same places would change what the other reads.
 #[repr(C)]
 pub struct ArchiveStorage {
-    kept: Kept<ArchiveIn<'static, RECORD>>,
+    slot: Slot<ArchiveIn<'static, RECORD>>,
     /// Its address when it was made.
     home: AtomicUsize,
 }
@@ -47,7 +47,7 @@ const _: () = {
 /// # Safety
 /// Where `archive` is neither null nor misaligned it points to an `amb_archive` that has been written to (static memory has) and
 /// that only this library touches.
-unsafe fn kept<'a>(archive: *mut ArchiveStorage) -> Result<&'a ArchiveStorage, Code> {
+unsafe fn slot<'a>(archive: *mut ArchiveStorage) -> Result<&'a ArchiveStorage, Code> {
     Argument::Archive.check_to(ALIGN, archive.cast_const())?;
     // SAFETY: not null, aligned and large enough; any bytes are valid, because its words are integers and the rest may be
     // uninitialised.
@@ -57,16 +57,16 @@ unsafe fn kept<'a>(archive: *mut ArchiveStorage) -> Result<&'a ArchiveStorage, C
 /// An archive that was made in this very place, for one call.
 ///
 /// # Safety
-/// As for [`kept`].
+/// As for [`slot`].
 unsafe fn lease<'a>(
     archive: *mut ArchiveStorage,
 ) -> Result<Lease<'a, ArchiveIn<'static, RECORD>>, Code> {
     // SAFETY: the caller's promise.
-    let this = unsafe { kept(archive) }?;
+    let this = unsafe { slot(archive) }?;
     if this.home.load(Ordering::Relaxed) != archive.addr() {
         return Err(Code::ERROR_ARCHIVE_NOT_INITIALISED);
     }
-    Lease::new(&this.kept)
+    Lease::new(&this.slot)
 }
 
 /// Makes an archive without a record in storage of the caller's.
@@ -82,14 +82,14 @@ pub unsafe extern "C" fn amb_archive_init(
     count: usize,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let done = unsafe { kept(archive) }.and_then(|this| {
+    let done = unsafe { slot(archive) }.and_then(|this| {
         Argument::Places.check_to(ALIGN, places.cast_const())?;
         // More would not be an object.
         let most = isize::MAX.unsigned_abs() / size_of::<Shelf>();
         if count == 0 || count > most {
             return Err(Code::ERROR_PLACES_COUNT);
         }
-        let making = Making::new(&this.kept)?;
+        let making = Making::new(&this.slot)?;
         // In place: one that is made goes over the stack, which takes 24 kilobytes; the test `capi` looks.
         // SAFETY: these are the places that the caller promises, and aligned. The making keeps every other call away.
         unsafe { places.write_bytes(0, count) };
@@ -164,8 +164,8 @@ pub unsafe extern "C" fn amb_archive_count(archive: *mut ArchiveStorage, count: 
     // SAFETY: the caller's promise.
     let done = unsafe { lease(archive) }.and_then(|mut archive| {
         // SAFETY: the caller's promise.
-        let place = unsafe { Place::new(Argument::Result, count) }?;
-        place.put(u32::try_from(archive.content().count()).unwrap_or(u32::MAX));
+        let place = unsafe { OutPtr::new(Argument::Result, count) }?;
+        place.write(u32::try_from(archive.content().count()).unwrap_or(u32::MAX));
         Ok(())
     });
     Code::from_result(done)
@@ -188,10 +188,10 @@ pub unsafe extern "C" fn amb_archive_section(
         // SAFETY: the caller's promise.
         let stamp = unsafe { Argument::Stamp.read(stamp) }?.into();
         // SAFETY: the caller's promise.
-        let place = unsafe { Place::new(Argument::Result, section) }?;
+        let place = unsafe { OutPtr::new(Argument::Result, section) }?;
         let record = archive.content().oldest();
         let made = record.and_then(|record| record.section(index, &stamp));
-        place.put(CSection::new(made.ok_or(Code::NOTHING)?.seal()));
+        place.write(CSection::new(made.ok_or(Code::NOTHING)?.seal()));
         Ok(())
     });
     Code::from_result(done)

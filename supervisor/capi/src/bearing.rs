@@ -3,7 +3,7 @@
 use crate::calls::ending;
 use crate::code::Code;
 use crate::halves;
-use crate::pointer::{Argument, Place};
+use crate::pointer::{Argument, OutPtr};
 use crate::structs::{CBearing, CShaft};
 use supervisor::{Bearing, Config, PARAMETERS, RotorCore};
 
@@ -14,13 +14,13 @@ use supervisor::{Bearing, Config, PARAMETERS, RotorCore};
 unsafe fn values_place<const PLANES: usize>(
     values: *mut f32,
     count: usize,
-) -> Result<Place<[[f32; PARAMETERS.len()]; PLANES]>, Code> {
+) -> Result<OutPtr<[[f32; PARAMETERS.len()]; PLANES]>, Code> {
     Argument::Values.check(values.cast_const())?;
     if count != PLANES * PARAMETERS.len() {
         return Err(Code::ERROR_VALUES_COUNT);
     }
     // SAFETY: the caller's promise; there is room for an array of this type, which is aligned as its elements.
-    unsafe { Place::new(Argument::Values, values.cast()) }
+    unsafe { OutPtr::new(Argument::Values, values.cast()) }
 }
 
 /// The values of a configuration of one plane, from nine numbers.
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn amb_config_for_bearing(
         let place = unsafe { values_place(values, count) }?;
         let config = Config::for_bearing(&bearing.into());
         (config.validate()).map_err(|error| halves::code_of(&error))?;
-        place.put([config.values()]);
+        place.write([config.values()]);
         Ok(())
     });
     Code::from_result(done)
@@ -71,7 +71,7 @@ pub unsafe extern "C" fn amb_config_for_rotor(
         let configs = Config::for_rotor(&shaft, &bearings.map(Bearing::from));
         let (_, configs) =
             RotorCore::new(&shaft, &configs).map_err(|error| halves::code_of_shaft(&error))?;
-        place.put(configs.map(|config| config.values()));
+        place.write(configs.map(|config| config.values()));
         Ok(())
     });
     Code::from_result(done)

@@ -3,7 +3,7 @@
 
 use crate::code::Code;
 use crate::halves::{self, Halves, Split, Storage};
-use crate::pointer::{Argument, Place};
+use crate::pointer::{Argument, OutPtr};
 use crate::structs::{CCommand, CEvent, CParameter, CReport, CSample, CSection, CStamp};
 use crate::{parameters, version};
 use core::ffi::{CStr, c_char};
@@ -45,7 +45,7 @@ pub extern "C" fn amb_error_text(code: Code) -> *const c_char {
 #[unsafe(export_name = concat!("amb_parameter_at", ending!()))]
 pub unsafe extern "C" fn amb_parameter_at(index: u32, parameter: *mut CParameter) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Result, parameter) } {
+    let place = match unsafe { OutPtr::new(Argument::Result, parameter) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -53,7 +53,7 @@ pub unsafe extern "C" fn amb_parameter_at(index: u32, parameter: *mut CParameter
     let (Some(row), Some(texts)) = (PARAMETERS.get(index), parameters::texts(index)) else {
         return Code::ERROR_INDEX;
     };
-    place.put(CParameter {
+    place.write(CParameter {
         name: texts.name.as_ptr(),
         unit: texts.unit.as_ptr(),
         text: texts.text.as_ptr(),
@@ -75,14 +75,14 @@ pub unsafe extern "C" fn amb_parameter_index(name: *const c_char, index: *mut u3
         return Code::ERROR_NAME_NULL;
     }
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Result, index) } {
+    let place = match unsafe { OutPtr::new(Argument::Result, index) } {
         Ok(place) => place,
         Err(code) => return code,
     };
     for (index, parameter) in (0..).zip(PARAMETERS) {
         // SAFETY: not null, and ended by a zero byte.
         if unsafe { is(name, parameter.name) } {
-            place.put(index);
+            place.write(index);
             return Code::OK;
         }
     }
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn amb_tick(
     command: *mut CCommand,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Command, command) } {
+    let place = match unsafe { OutPtr::new(Argument::Command, command) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -206,11 +206,11 @@ pub unsafe extern "C" fn amb_tick(
     let done = sample.and_then(|sample| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(supervisor) }?;
-        place.put(lease.content().tick(&sample.into()).into());
+        place.write(lease.content().tick(&sample.into()).into());
         Ok(())
     });
     if done.is_err() {
-        place.put(CCommand::NO_FORCE);
+        place.write(CCommand::NO_FORCE);
     }
     Code::from_result(done)
 }
@@ -223,11 +223,11 @@ pub unsafe extern "C" fn amb_tick(
 #[unsafe(export_name = concat!("amb_stimulus", ending!()))]
 pub unsafe extern "C" fn amb_stimulus(supervisor: *mut Storage, stimulus_n: *mut f32) -> Code {
     // SAFETY: the caller's promise; an array is aligned as its elements.
-    let place = unsafe { Place::new(Argument::Result, stimulus_n.cast::<[f32; 2]>()) };
+    let place = unsafe { OutPtr::new(Argument::Result, stimulus_n.cast::<[f32; 2]>()) };
     let done = place.and_then(|place| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(supervisor) }?;
-        place.put(lease.content().stimulus_n());
+        place.write(lease.content().stimulus_n());
         Ok(())
     });
     Code::from_result(done)
@@ -238,19 +238,19 @@ pub unsafe extern "C" fn amb_stimulus(supervisor: *mut Storage, stimulus_n: *mut
 /// # Safety
 /// `asked` is null, misaligned, or points to storage in which one was made or that is full of zeros; `result` is null,
 /// misaligned, or points to memory for a `T`.
-pub(crate) unsafe fn take<S: Split, T: Copy>(
+pub(crate) unsafe fn with_reader<S: Split, T: Copy>(
     asked: *mut Halves<S>,
     result: *mut T,
     question: impl FnOnce(&mut S::Reader) -> Result<T, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Result, result) };
+    let place = unsafe { OutPtr::new(Argument::Result, result) };
     // SAFETY: the caller's promise.
     let lease = unsafe { halves::reader(asked) };
     let answer = lease.and_then(|mut lease| {
         // Asked only where the answer has a place: an event without one would be lost.
         let place = place?;
-        place.put(question(lease.content())?);
+        place.write(question(lease.content())?);
         Ok(())
     });
     Code::from_result(answer)
@@ -259,18 +259,18 @@ pub(crate) unsafe fn take<S: Split, T: Copy>(
 /// Gives `result` what the last tick has published; at any time, to any number of callers.
 ///
 /// # Safety
-/// As for [`take`].
-pub(crate) unsafe fn see<S: Split, T: Copy>(
+/// As for [`with_reader`].
+pub(crate) unsafe fn with_published<S: Split, T: Copy>(
     asked: *const Halves<S>,
     result: *mut T,
     question: impl FnOnce(S::Published) -> Result<T, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Result, result) };
+    let place = unsafe { OutPtr::new(Argument::Result, result) };
     // SAFETY: the caller's promise.
     let published = unsafe { halves::published(asked) };
     let answer = published.and_then(|published| {
-        place?.put(question(published)?);
+        place?.write(question(published)?);
         Ok(())
     });
     Code::from_result(answer)
@@ -284,7 +284,7 @@ pub(crate) unsafe fn see<S: Split, T: Copy>(
 #[unsafe(export_name = concat!("amb_mode", ending!()))]
 pub unsafe extern "C" fn amb_mode(supervisor: *const Storage, mode: *mut u32) -> Code {
     // SAFETY: the caller's promise.
-    unsafe { see(supervisor, mode, |s| Ok(s.mode() as u32)) }
+    unsafe { with_published(supervisor, mode, |s| Ok(s.mode() as u32)) }
 }
 
 /// Name of a mode, for people; never null.
@@ -318,7 +318,7 @@ pub fn mode_name(mode: u32) -> &'static CStr {
 pub unsafe extern "C" fn amb_report_now(supervisor: *const Storage, report: *mut CReport) -> Code {
     // SAFETY: the caller's promise.
     unsafe {
-        see(supervisor, report, |s| {
+        with_published(supervisor, report, |s| {
             s.report().map(Into::into).ok_or(Code::ERROR_BUSY)
         })
     }
@@ -333,7 +333,7 @@ pub unsafe extern "C" fn amb_report_now(supervisor: *const Storage, report: *mut
 pub unsafe extern "C" fn amb_next_event(supervisor: *mut Storage, event: *mut CEvent) -> Code {
     // SAFETY: the caller's promise.
     unsafe {
-        take(supervisor, event, |s| {
+        with_reader(supervisor, event, |s| {
             s.next_event().map(Into::into).ok_or(Code::NOTHING)
         })
     }
@@ -363,7 +363,7 @@ pub unsafe extern "C" fn amb_record_section(
 /// Writes a section of a record down.
 ///
 /// # Safety
-/// `asked` as for [`take`]; `stamp` and `section` are null, misaligned, or point to their structs.
+/// `asked` as for [`with_reader`]; `stamp` and `section` are null, misaligned, or point to their structs.
 pub(crate) unsafe fn write_section<S: Split>(
     asked: *mut Halves<S>,
     stamp: *const CStamp,
@@ -373,11 +373,11 @@ pub(crate) unsafe fn write_section<S: Split>(
     // SAFETY: the caller's promise.
     let stamp = unsafe { Argument::Stamp.read(stamp) }?.into();
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Result, section) }?;
+    let place = unsafe { OutPtr::new(Argument::Result, section) }?;
     // SAFETY: the caller's promise.
     let made = section_of(unsafe { halves::reader(asked) }?.content(), &stamp);
     let mut made = made.ok_or(Code::NOTHING)?;
-    place.put(CSection::new(made.seal()));
+    place.write(CSection::new(made.seal()));
     Ok(())
 }
 

@@ -4,7 +4,7 @@
 use crate::code::Code;
 use crate::layout::defined;
 use crate::pointer::Argument;
-use crate::storage::{Content, Kept, Lease, Making};
+use crate::storage::{Content, Lease, Making, Slot};
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -19,8 +19,8 @@ pub const RECORD: usize = 512;
 /// Memory of the caller's for a supervisor `T` and its halves, which point to it: it stays where it was made.
 #[repr(C)]
 pub struct Halves<T: Split> {
-    ticker: Kept<T::Ticker>,
-    reader: Kept<T::Reader>,
+    ticker: Slot<T::Ticker>,
+    reader: Slot<T::Reader>,
     /// Address of it all when it was made.
     home: AtomicUsize,
     published: UnsafeCell<MaybeUninit<T::Published>>,
@@ -30,12 +30,12 @@ pub struct Halves<T: Split> {
 /// What is in an `amb_supervisor`.
 pub type Storage = Halves<Supervisor<RECORD>>;
 /// What is in an `amb_rotor`.
-pub type RotorStorage = Halves<Rotor>;
+pub type RotorStorage = Halves<RotorParts>;
 
 /// A rotor in pieces, each made in its place.
 #[derive(Debug)]
 #[repr(C)]
-pub struct Rotor {
+pub struct RotorParts {
     machine: RotorCore,
     planes: [Supervisor<RECORD>; 2],
 }
@@ -82,7 +82,7 @@ pub struct RotorTicks {
     pub(crate) first: Option<HalfTick>,
 }
 
-impl Split for Rotor {
+impl Split for RotorParts {
     type Ticker = RotorTicks;
     type Reader = RotorReader<'static, RECORD>;
     type Published = [Seen; 2];
@@ -145,7 +145,7 @@ const fn fits<T: Split>(spare: usize) -> bool {
 
 const _: () = {
     // Room for the pointers and the alignment of any target, and to grow a little.
-    assert!(fits::<Supervisor<RECORD>>(2048) && fits::<Rotor>(4096));
+    assert!(fits::<Supervisor<RECORD>>(2048) && fits::<RotorParts>(4096));
     assert!(defined("AMB_RECORD_ENTRIES") == RECORD);
 };
 
@@ -216,7 +216,7 @@ pub(crate) unsafe fn published<T: Split>(halves: *const Halves<T>) -> Result<T::
     Ok(unsafe { (*this.published.get()).assume_init() })
 }
 
-/// Makes a supervisor by what puts it into its place; after an error the storage is as it was.
+/// Makes a supervisor by what initialises it in its place; after an error the storage is as it was.
 ///
 /// # Safety
 /// As for [`Halves::at`], with `bytes` bytes; and they stay where they are, in use by this crate alone, as long as there is a
@@ -224,7 +224,7 @@ pub(crate) unsafe fn published<T: Split>(halves: *const Halves<T>) -> Result<T::
 unsafe fn make<T: Split>(
     halves: *mut Halves<T>,
     bytes: usize,
-    put: impl FnOnce(&mut MaybeUninit<T>) -> Result<(), Code>,
+    init: impl FnOnce(&mut MaybeUninit<T>) -> Result<(), Code>,
 ) -> Result<(), Code> {
     T::ARGUMENT.check(halves.cast_const())?;
     if halves.addr() & (ALIGN - 1) != 0 {
@@ -239,8 +239,8 @@ unsafe fn make<T: Split>(
     // SAFETY: neither half is in use nor can be, and what they were is forgotten below: this is the only access. It lives as long
     // as its halves by the caller's promise.
     let whole: &'static mut MaybeUninit<T> = unsafe { &mut *this.whole.get() };
-    put(whole)?;
-    // SAFETY: put there.
+    init(whole)?;
+    // SAFETY: initialised.
     let (ticks, reads, published) = unsafe { whole.assume_init_mut() }.halves();
     // SAFETY: nobody reads it before the ticker is made.
     unsafe { &mut *this.published.get() }.write(published);
@@ -259,9 +259,9 @@ pub(crate) unsafe fn make_supervisor(
     bytes: usize,
     config: &Config,
 ) -> Result<(), Code> {
-    let put = |place: &mut _| put(place, config).map_err(|error| code_of(&error));
+    let init = |place: &mut _| init(place, config).map_err(|error| code_of(&error));
     // SAFETY: the caller's promise.
-    unsafe { make(storage, bytes, put) }
+    unsafe { make(storage, bytes, init) }
 }
 
 /// Makes a supervisor of a rotor.
@@ -273,16 +273,16 @@ pub(crate) unsafe fn make_rotor(
     bytes: usize,
     (shaft, configs): (&Shaft, &[Config; 2]),
 ) -> Result<(), Code> {
-    let put =
-        |place: &mut _| put_rotor(place, shaft, configs).map_err(|error| code_of_shaft(&error));
+    let init =
+        |place: &mut _| init_rotor(place, shaft, configs).map_err(|error| code_of_shaft(&error));
     // SAFETY: the caller's promise.
-    unsafe { make(storage, bytes, put) }
+    unsafe { make(storage, bytes, init) }
 }
 
 /// Piece by piece: the compiler makes a whole one on the stack first.
 #[inline(never)]
-fn put_rotor(
-    place: &mut MaybeUninit<Rotor>,
+fn init_rotor(
+    place: &mut MaybeUninit<RotorParts>,
     shaft: &Shaft,
     configs: &[Config; 2],
 ) -> Result<(), ShaftError> {
@@ -298,14 +298,14 @@ fn put_rotor(
     machine_place.write(machine);
     let [at_first, at_second] = planes;
     // Both were checked with the machine.
-    put_plane(at_first, &first, 0)?;
-    put_plane(at_second, &second, 1)
+    init_plane(at_first, &first, 0)?;
+    init_plane(at_second, &second, 1)
 }
 
 /// In a function of its own: then the compiler makes the supervisor in its place.
 /// Otherwise it is on the stack first, which takes 28 kilobytes; the test `capi` looks.
 #[inline(never)]
-fn put(place: &mut MaybeUninit<Supervisor<RECORD>>, config: &Config) -> Result<(), ConfigError> {
+fn init(place: &mut MaybeUninit<Supervisor<RECORD>>, config: &Config) -> Result<(), ConfigError> {
     config.validate()?;
     match Supervisor::new(config) {
         Ok(supervisor) => {
@@ -318,7 +318,7 @@ fn put(place: &mut MaybeUninit<Supervisor<RECORD>>, config: &Config) -> Result<(
 
 /// The same for a plane of a rotor.
 #[inline(never)]
-fn put_plane(
+fn init_plane(
     place: &mut MaybeUninit<Supervisor<RECORD>>,
     config: &Config,
     end: u8,

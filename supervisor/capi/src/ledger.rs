@@ -3,7 +3,7 @@
 use crate::calls::ending;
 use crate::code::Code;
 use crate::halves::{self, RECORD, RotorStorage, Storage};
-use crate::pointer::{Argument, Place};
+use crate::pointer::{Argument, OutPtr};
 use crate::rotor;
 use crate::structs::{self, CLedger};
 use supervisor::{LEDGER_BYTES, Ledger, LedgerError, Record};
@@ -81,8 +81,8 @@ pub unsafe extern "C" fn amb_ledger_new(
     ledger: *mut CLedger,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Ledger, ledger) };
-    Code::from_result(place.map(|place| place.put(Ledger::new(bearing, severity_allowed).into())))
+    let place = unsafe { OutPtr::new(Argument::Ledger, ledger) };
+    Code::from_result(place.map(|place| place.write(Ledger::new(bearing, severity_allowed).into())))
 }
 
 /// From what was written down.
@@ -100,8 +100,8 @@ pub unsafe extern "C" fn amb_ledger_read(
     let bytes = unsafe { written(bytes, count) };
     let done = bytes.and_then(|bytes| {
         // SAFETY: the caller's promise.
-        let place = unsafe { Place::new(Argument::Ledger, ledger) }?;
-        place.put(Ledger::from_bytes(&bytes)?.into());
+        let place = unsafe { OutPtr::new(Argument::Ledger, ledger) }?;
+        place.write(Ledger::from_bytes(&bytes)?.into());
         Ok(())
     });
     Code::from_result(done)
@@ -123,9 +123,9 @@ pub unsafe extern "C" fn amb_ledger_newer(
     let copies = unsafe { written(first, count).and_then(|a| Ok([a, written(second, count)?])) };
     let done = copies.and_then(|[first, second]| {
         // SAFETY: the caller's promise.
-        let place = unsafe { Place::new(Argument::Ledger, ledger) }?;
+        let place = unsafe { OutPtr::new(Argument::Ledger, ledger) }?;
         let (newer, other) = Ledger::newer([&first, &second])?;
-        place.put(newer.into());
+        place.write(newer.into());
         other.map_or(Ok(()), |_| Err(Code::ONE_COPY))
     });
     Code::from_result(done)
@@ -142,10 +142,10 @@ unsafe fn take_in(
     // SAFETY: the caller's promise.
     let mut kept = Ledger::from(unsafe { Argument::Ledger.read(ledger) }?);
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Ledger, ledger) }?;
+    let place = unsafe { OutPtr::new(Argument::Ledger, ledger) }?;
     match record.is_some_and(|record| kept.take_in(&record)) {
         true => {
-            place.put(kept.into());
+            place.write(kept.into());
             Ok(())
         }
         false => Err(Code::NOTHING),
@@ -206,11 +206,11 @@ pub unsafe extern "C" fn amb_ledger_write(
     let ledger = unsafe { Argument::Ledger.read(ledger) };
     let done = ledger.and_then(|ledger| {
         // SAFETY: the caller's promise; the count is looked at before anything is written.
-        let place = unsafe { Place::new(Argument::Bytes, bytes.cast::<[u8; LEDGER_BYTES]>()) }?;
+        let place = unsafe { OutPtr::new(Argument::Bytes, bytes.cast::<[u8; LEDGER_BYTES]>()) }?;
         if count != LEDGER_BYTES {
             return Err(Code::ERROR_LEDGER_LENGTH);
         }
-        place.put(Ledger::from(ledger).to_bytes());
+        place.write(Ledger::from(ledger).to_bytes());
         Ok(())
     });
     Code::from_result(done)
@@ -231,9 +231,9 @@ pub unsafe extern "C" fn amb_ledger_landings_left(
     let ledger = unsafe { Argument::Ledger.read(ledger) };
     let done = ledger.and_then(|ledger| {
         // SAFETY: the caller's promise.
-        let place = unsafe { Place::new(Argument::Result, landings) }?;
+        let place = unsafe { OutPtr::new(Argument::Result, landings) }?;
         let left = Ledger::from(ledger).landings_left(severity);
-        place.put(left.ok_or(Code::NOTHING)?);
+        place.write(left.ok_or(Code::NOTHING)?);
         Ok(())
     });
     Code::from_result(done)

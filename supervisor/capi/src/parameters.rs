@@ -57,88 +57,88 @@ impl<const N: usize> Pool<N> {
                 ..
             } = PARAMETERS[i];
             pool.begin(i, 0);
-            pool.put(name);
+            pool.push_str(name);
             pool.begin(i, 1);
-            pool.put(unit);
+            pool.push_str(unit);
             pool.begin(i, 2);
-            pool.put(text);
+            pool.push_str(text);
             pool.begin(i, 3);
-            pool.put(name);
-            pool.put(" is outside ");
-            pool.put_number(low);
-            pool.put(" to ");
-            pool.put_number(high);
+            pool.push_str(name);
+            pool.push_str(" is outside ");
+            pool.push_number(low);
+            pool.push_str(" to ");
+            pool.push_number(high);
             // "1" stands for no unit.
             if !matches!(unit.as_bytes(), b"1") {
-                pool.put(" ");
-                pool.put(unit);
+                pool.push_str(" ");
+                pool.push_str(unit);
             }
             i += 1;
         }
-        pool.put_byte(0);
+        pool.push_byte(0);
         pool
     }
 
     /// Ends the text before, and begins another.
     const fn begin(&mut self, parameter: usize, which: usize) {
         if self.length > 0 {
-            self.put_byte(0);
+            self.push_byte(0);
         }
         assert!(self.length <= u16::MAX as usize, "offsets have 16 bits");
         self.offsets[parameter][which] = self.length as u16;
     }
 
-    const fn put_byte(&mut self, byte: u8) {
+    const fn push_byte(&mut self, byte: u8) {
         if self.length < N {
             self.bytes[self.length] = byte;
         }
         self.length += 1;
     }
 
-    const fn put(&mut self, text: &str) {
+    const fn push_str(&mut self, text: &str) {
         let bytes = text.as_bytes();
         let mut i = 0;
         while i < bytes.len() {
             assert!(bytes[i] != 0, "a zero byte would end the text in C");
-            self.put_byte(bytes[i]);
+            self.push_byte(bytes[i]);
             i += 1;
         }
     }
 
     /// A limit of the table, which people wrote with few digits: 0.99, 7, 1e-6.
-    const fn put_number(&mut self, value: f32) {
+    const fn push_number(&mut self, value: f32) {
         if value < 0.0 {
-            self.put_byte(b'-');
+            self.push_byte(b'-');
         }
         let (digits, exponent) = decimal(value.abs());
         if digits == 0 {
-            self.put_byte(b'0');
+            self.push_byte(b'0');
         } else if exponent >= -3 && exponent < 0 {
             let scale = 10_u32.pow(exponent.unsigned_abs());
-            self.put_integer(digits / scale);
-            self.put_byte(b'.');
+            self.push_integer(digits / scale);
+            self.push_byte(b'.');
             let mut place = scale / 10;
             while place > 0 {
-                self.put_byte(b'0' + (digits / place % 10) as u8);
+                self.push_byte(b'0' + (digits / place % 10) as u8);
                 place /= 10;
             }
         } else if exponent >= 0 && exponent <= 3 {
-            self.put_integer(digits * 10_u32.pow(exponent.unsigned_abs()));
+            self.push_integer(digits * 10_u32.pow(exponent.unsigned_abs()));
         } else {
-            self.put_integer(digits);
-            self.put_byte(b'e');
+            self.push_integer(digits);
+            self.push_byte(b'e');
             if exponent < 0 {
-                self.put_byte(b'-');
+                self.push_byte(b'-');
             }
-            self.put_integer(exponent.unsigned_abs());
+            self.push_integer(exponent.unsigned_abs());
         }
     }
 
-    const fn put_integer(&mut self, value: u32) {
+    const fn push_integer(&mut self, value: u32) {
         if value >= 10 {
-            self.put_integer(value / 10);
+            self.push_integer(value / 10);
         }
-        self.put_byte(b'0' + (value % 10) as u8);
+        self.push_byte(b'0' + (value % 10) as u8);
     }
 }
 

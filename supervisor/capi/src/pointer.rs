@@ -97,9 +97,9 @@ impl Argument {
 }
 
 /// Where a result goes: writable, once it is made.
-pub(crate) struct Place<T>(*mut T);
+pub(crate) struct OutPtr<T>(*mut T);
 
-impl<T: Copy> Place<T> {
+impl<T: Copy> OutPtr<T> {
     /// # Safety
     /// Where the pointer is neither null nor misaligned it points to memory for a `T`, until the call
     /// that this place is made for returns.
@@ -108,7 +108,7 @@ impl<T: Copy> Place<T> {
         Ok(Self(pointer))
     }
 
-    pub(crate) fn put(&self, value: T) {
+    pub(crate) fn write(&self, value: T) {
         // SAFETY: checked, and promised to be memory for a T, in `new`.
         unsafe { self.0.write(value) }
     }

@@ -1,9 +1,9 @@
 //! The functions of the header on the supervisor of a rotor in two bearing planes.
 
-use crate::calls::{configurations, ending, see, take, write_section};
+use crate::calls::{configurations, ending, with_published, with_reader, write_section};
 use crate::code::Code;
 use crate::halves::{self, RotorStorage, RotorTicks};
-use crate::pointer::{Argument, Place};
+use crate::pointer::{Argument, OutPtr};
 use crate::structs::{CCommand, CEvent, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp};
 use supervisor::Sample;
 
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn amb_rotor_tick(
     command: *mut CRotorCommand,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Command, command) } {
+    let place = match unsafe { OutPtr::new(Argument::Command, command) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn amb_rotor_tick(
     let done = samples.and_then(|samples| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(rotor) }?;
-        place.put(
+        place.write(
             (lease.content().ticker)
                 .tick(&samples.map(Into::into))
                 .into(),
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn amb_rotor_tick(
         Ok(())
     });
     if done.is_err() {
-        place.put(NO_FORCES);
+        place.write(NO_FORCES);
     }
     Code::from_result(done)
 }
@@ -177,7 +177,7 @@ unsafe fn half<C: Copy>(
     tick: impl FnOnce(&mut RotorTicks, Sample) -> Result<C, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Command, command) } {
+    let place = match unsafe { OutPtr::new(Argument::Command, command) } {
         Ok(place) => place,
         Err(code) => return code,
     };
@@ -192,7 +192,7 @@ unsafe fn half<C: Copy>(
         Ok(answer) => (answer, Code::OK),
         Err(code) => (no_force, code),
     };
-    place.put(answer);
+    place.write(answer);
     code
 }
 
@@ -207,11 +207,11 @@ pub unsafe extern "C" fn amb_rotor_stimulus(
     stimulus_n: *mut f32,
 ) -> Code {
     // SAFETY: the caller's promise; an array is aligned as its elements.
-    let place = unsafe { Place::new(Argument::Result, stimulus_n.cast::<[[f32; 2]; 2]>()) };
+    let place = unsafe { OutPtr::new(Argument::Result, stimulus_n.cast::<[[f32; 2]; 2]>()) };
     let done = place.and_then(|place| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(rotor) }?;
-        place.put(lease.content().ticker.stimulus_n());
+        place.write(lease.content().ticker.stimulus_n());
         Ok(())
     });
     Code::from_result(done)
@@ -239,7 +239,7 @@ pub unsafe extern "C" fn amb_rotor_report_now(
 ) -> Code {
     // SAFETY: the caller's promise.
     unsafe {
-        see(rotor, report, |[first, second]| {
+        with_published(rotor, report, |[first, second]| {
             let published = if self::plane(plane)? == 0 {
                 first
             } else {
@@ -264,7 +264,7 @@ pub unsafe extern "C" fn amb_rotor_next_event(
 ) -> Code {
     // SAFETY: the caller's promise.
     unsafe {
-        take(rotor, event, |reader| {
+        with_reader(rotor, event, |reader| {
             let event = reader.next_event(self::plane(plane)?);
             event.map(Into::into).ok_or(Code::NOTHING)
         })

@@ -11,7 +11,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 /// Memory of the caller's for a `T`.
 #[repr(C)]
-pub struct Kept<T> {
+pub struct Slot<T> {
     state: AtomicU32,
     content: UnsafeCell<MaybeUninit<T>>,
 }
@@ -30,7 +30,7 @@ pub trait Content: Sized {
     const IN_USE: Code;
 }
 
-impl<T: Content> Kept<T> {
+impl<T: Content> Slot<T> {
     /// Whether it is there, used or not.
     pub(crate) fn is_made(&self) -> bool {
         let state = self.state.load(Ordering::Acquire);
@@ -40,44 +40,44 @@ impl<T: Content> Kept<T> {
 
 /// Memory that is being written to: calls that come meanwhile are refused.
 pub(crate) struct Making<'a, T: Content> {
-    kept: &'a Kept<T>,
+    slot: &'a Slot<T>,
     /// What its word will be.
     after: u32,
 }
 
 impl<'a, T: Content> Making<'a, T> {
-    pub(crate) fn new(kept: &'a Kept<T>) -> Result<Self, Code> {
-        let after = kept.state.load(Ordering::Acquire);
+    pub(crate) fn new(slot: &'a Slot<T>) -> Result<Self, Code> {
+        let after = slot.state.load(Ordering::Acquire);
         if after == T::BUSY || after == T::MAKING {
             return Err(T::IN_USE);
         }
-        kept.state.store(T::MAKING, Ordering::Release);
-        Ok(Self { kept, after })
+        slot.state.store(T::MAKING, Ordering::Release);
+        Ok(Self { slot, after })
     }
 
     /// Puts it there. What was there before is not dropped: it owns nothing but its own bytes.
     pub(crate) fn finish(mut self, content: T) {
         // SAFETY: the word is MAKING, so that no lease is given out: this is the only access.
-        unsafe { &mut *self.kept.content.get() }.write(content);
+        unsafe { &mut *self.slot.content.get() }.write(content);
         self.after = T::READY;
     }
 }
 
 impl<T: Content> Drop for Making<'_, T> {
     fn drop(&mut self) {
-        self.kept.state.store(self.after, Ordering::Release);
+        self.slot.state.store(self.after, Ordering::Release);
     }
 }
 
 /// The only use of a content at this time.
 pub(crate) struct Lease<'a, T: Content> {
-    kept: &'a Kept<T>,
+    slot: &'a Slot<T>,
 }
 
 impl<'a, T: Content> Lease<'a, T> {
-    pub(crate) fn new(kept: &'a Kept<T>) -> Result<Self, Code> {
-        match begin(&kept.state, T::READY, T::BUSY) {
-            Ok(()) => Ok(Self { kept }),
+    pub(crate) fn new(slot: &'a Slot<T>) -> Result<Self, Code> {
+        match begin(&slot.state, T::READY, T::BUSY) {
+            Ok(()) => Ok(Self { slot }),
             Err(found) if found == T::BUSY || found == T::MAKING => Err(T::IN_USE),
             Err(_) => Err(T::NOT_MADE),
         }
@@ -86,13 +86,13 @@ impl<'a, T: Content> Lease<'a, T> {
     pub(crate) fn content(&mut self) -> &mut T {
         // SAFETY: the word was READY, so `Making` has put a T there; it is BUSY now, so this lease is the only
         // one, and the borrow of the lease lets only one reference exist.
-        unsafe { (*self.kept.content.get()).assume_init_mut() }
+        unsafe { (*self.slot.content.get()).assume_init_mut() }
     }
 }
 
 impl<T: Content> Drop for Lease<'_, T> {
     fn drop(&mut self) {
-        self.kept.state.store(T::READY, Ordering::Release);
+        self.slot.state.store(T::READY, Ordering::Release);
     }
 }
 

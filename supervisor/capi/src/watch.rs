@@ -3,12 +3,12 @@
 use crate::calls::ending;
 use crate::code::Code;
 use crate::layout::defined;
-use crate::pointer::{Argument, Place};
-use crate::storage::{Content, Kept, Lease, Making};
+use crate::pointer::{Argument, OutPtr};
+use crate::storage::{Content, Lease, Making, Slot};
 use supervisor::CommandWatchdog;
 
 /// What is in an `amb_watch`.
-pub type WatchStorage = Kept<CommandWatchdog<f32>>;
+pub type WatchStorage = Slot<CommandWatchdog<f32>>;
 
 impl Content for CommandWatchdog<f32> {
     const READY: u32 = 0xA3B1_07C8;
@@ -26,7 +26,7 @@ const _: () = {
 /// # Safety
 /// Where `watch` is neither null nor misaligned it points to an `amb_watch` that has been written to (static memory has) and that
 /// only this library touches.
-unsafe fn kept<'a>(watch: *mut WatchStorage) -> Result<&'a WatchStorage, Code> {
+unsafe fn slot<'a>(watch: *mut WatchStorage) -> Result<&'a WatchStorage, Code> {
     Argument::Watch.check(watch.cast_const())?;
     // SAFETY: not null, aligned and large enough; any bytes are valid, because its word is an integer and the rest may be
     // uninitialised.
@@ -42,7 +42,7 @@ unsafe fn kept<'a>(watch: *mut WatchStorage) -> Result<&'a WatchStorage, Code> {
 #[unsafe(export_name = concat!("amb_watch_init", ending!()))]
 pub unsafe extern "C" fn amb_watch_init(watch: *mut WatchStorage, periods: u32) -> Code {
     // SAFETY: the caller's promise.
-    let making = unsafe { kept(watch) }.and_then(Making::new);
+    let making = unsafe { slot(watch) }.and_then(Making::new);
     Code::from_result(making.map(|making| making.finish(CommandWatchdog::new(periods))))
 }
 
@@ -55,7 +55,7 @@ pub unsafe extern "C" fn amb_watch_init(watch: *mut WatchStorage, periods: u32) 
 #[unsafe(export_name = concat!("amb_watch_renew", ending!()))]
 pub unsafe extern "C" fn amb_watch_renew(watch: *mut WatchStorage, force: *const f32) -> Code {
     // SAFETY: the caller's promise.
-    let lease = unsafe { kept(watch) }.and_then(Lease::new);
+    let lease = unsafe { slot(watch) }.and_then(Lease::new);
     let done = lease.and_then(|mut lease| {
         // SAFETY: the caller's promise. An array is aligned as its elements.
         let force = unsafe { Argument::Force.read(force.cast::<[f32; 2]>()) }?;
@@ -73,18 +73,18 @@ pub unsafe extern "C" fn amb_watch_renew(watch: *mut WatchStorage, force: *const
 #[unsafe(export_name = concat!("amb_watch_force", ending!()))]
 pub unsafe extern "C" fn amb_watch_force(watch: *mut WatchStorage, force: *mut f32) -> Code {
     // SAFETY: the caller's promise. An array is aligned as its elements.
-    let place = match unsafe { Place::new(Argument::Force, force.cast::<[f32; 2]>()) } {
+    let place = match unsafe { OutPtr::new(Argument::Force, force.cast::<[f32; 2]>()) } {
         Ok(place) => place,
         Err(code) => return code,
     };
     // SAFETY: the caller's promise.
-    match unsafe { kept(watch) }.and_then(Lease::new) {
+    match unsafe { slot(watch) }.and_then(Lease::new) {
         Ok(mut lease) => {
-            place.put(lease.content().force());
+            place.write(lease.content().force());
             Code::OK
         }
         Err(code) => {
-            place.put([0.0; 2]);
+            place.write([0.0; 2]);
             code
         }
     }
@@ -98,11 +98,11 @@ pub unsafe extern "C" fn amb_watch_force(watch: *mut WatchStorage, force: *mut f
 #[unsafe(export_name = concat!("amb_watch_expired", ending!()))]
 pub unsafe extern "C" fn amb_watch_expired(watch: *mut WatchStorage, expired: *mut u32) -> Code {
     // SAFETY: the caller's promise.
-    let place = unsafe { Place::new(Argument::Result, expired) };
+    let place = unsafe { OutPtr::new(Argument::Result, expired) };
     // SAFETY: the caller's promise.
-    let lease = unsafe { kept(watch) }.and_then(Lease::new);
+    let lease = unsafe { slot(watch) }.and_then(Lease::new);
     let answer = lease.and_then(|mut lease| {
-        place?.put(u32::from(lease.content().expired()));
+        place?.write(u32::from(lease.content().expired()));
         Ok(())
     });
     Code::from_result(answer)

@@ -314,7 +314,7 @@ fn configurations_go_only_where_their_values_are() {
         (&raw mut *one).cast::<f32>(),
         (&raw mut *both).cast::<f32>(),
     );
-    // SAFETY: every pointer is null or points to what its type says, and the values to as many floats as is told.
+    // SAFETY: every pointer is null or points to what its type says, and the values to as many floats as is declared.
     unsafe {
         assert_eq!(amb_config_for_bearing(first, to_one, one.len()), Code::OK);
         let code = amb_config_for_rotor(&raw const shaft, first, to_both, both.len());

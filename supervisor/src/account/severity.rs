@@ -30,12 +30,12 @@ pub(crate) struct Severity<S: Scalar> {
     beyond_ticks: u32,
     coast_down: bool,
     /// Coasting down was asked for because of the index.
-    index_told: bool,
+    index_reported: bool,
     /// Velocity at the last tick: what it was before an impact that the sample shows.
     before: Vec2<S>,
 }
 
-words_of_fields!(Severity<S> { landings, nuisances, impacts, contact_ticks, fastest, index, engaged, landed, beyond_ticks, coast_down, index_told, before });
+words_of_fields!(Severity<S> { landings, nuisances, impacts, contact_ticks, fastest, index, engaged, landed, beyond_ticks, coast_down, index_reported, before });
 
 /// Fastest normal speed before an impact, and backward in contact.
 #[derive(Debug, Clone, Copy, Default)]
@@ -177,13 +177,13 @@ impl<S: Scalar> Severity<S> {
             self.beyond_ticks = 0;
         }
         // The index never falls: what it asks for it asks for once, unless its limit is raised. A request that is
-        // out already does not keep it from being told later.
+        // out already does not keep it from being reported later.
         let passed = self.index.value() > S::ONE;
-        self.index_told = self.index_told && passed;
-        let by_index = passed && !self.index_told;
+        self.index_reported = self.index_reported && passed;
+        let by_index = passed && !self.index_reported;
         if (by_index || self.beyond_ticks > coeffs.coast_down_ticks) && !self.coast_down {
             self.coast_down = true;
-            self.index_told = passed;
+            self.index_reported = passed;
             result.events |= Events::COAST_DOWN;
         }
         result

@@ -196,8 +196,8 @@ pub(crate) fn levitation<S: Scalar>(
 fn clamped<S: Scalar>(command: Vec2<S>, envelope: ForceEnvelope<S>) -> (Vec2<S>, Limits) {
     let (force, bound) = scaled_into(command, envelope);
     // That it was no number, or more than the whole cap, is what clamping says already.
-    let said = Limits::FORCE_CAP | Limits::NOT_FINITE;
-    (force, Limits::LEVITATION_CLAMPED | (bound - said))
+    let redundant = Limits::FORCE_CAP | Limits::NOT_FINITE;
+    (force, Limits::LEVITATION_CLAMPED | (bound - redundant))
 }
 
 /// A force that does not fit, in its direction but for an axis that is lost, or has no number: that one takes nothing

@@ -28,7 +28,7 @@ const LEAST_WINDOW: f32 = 32.0;
 /// Loads of so many caps there are in a shock: what they do in a tick is no cause for doubt, nor is so little \[clearances\].
 const SHOCK: f32 = 8.0;
 const LEAST_DOUBTED: f32 = 0.02;
-/// Noise of the estimated speed (root mean square, of a coordinate) by which an approach can still be told \[lift-off speeds\].
+/// Noise of the estimated speed (root mean square, of a coordinate) by which an approach can still be detected \[lift-off speeds\].
 const QUIET_SPEED: f32 = 0.1;
 
 /// Longest delay between a sample and its force \[ticks\].
@@ -118,7 +118,7 @@ pub(crate) struct GuardCoeffs<S> {
     pub(crate) way_per_tick: S,
     /// Three steps of the sensor, or the shortest way there is, as a sum of speeds over ticks.
     pub(crate) sensor_speeds: S,
-    /// Mean distance of a sample from where it was expected, of the noise that was told; and up to which of it the speed is
+    /// Mean distance of a sample from where it was expected, of the configured noise; and up to which of it the speed is
     /// known well enough to tell an approach by.
     pub(crate) configured_noise: S,
     pub(crate) quiet_noise: S,
@@ -222,7 +222,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) index_rate: RateOf<S>,
     /// Ticks of a window of [`crate::decide::trust`], less one.
     pub(crate) window_ticks: u16,
-    /// Bending modes that were told and can be kept apart.
+    /// Configured bending modes that can be kept apart.
     pub(crate) bending: Option<Modes<S>>,
     /// Whether it acts from the approach on, and not on evident backward whirl alone.
     pub(crate) acts_in_flight: bool,

@@ -109,12 +109,12 @@ impl CheckedCell {
         Self(AtomicU32::new(0))
     }
 
-    pub(crate) fn put(&self, checked: Checked) {
+    pub(crate) fn store(&self, checked: Checked) {
         let word = (checked.value.to_bits() & !FINDING_BITS) | u32::from(checked.finding as u8);
         self.0.store(word, Ordering::Relaxed);
     }
 
-    pub(crate) fn get(&self) -> Checked {
+    pub(crate) fn load(&self) -> Checked {
         let word = self.0.load(Ordering::Relaxed);
         let named = Finding::ALL.get((word & FINDING_BITS) as usize).copied();
         Checked {

@@ -5,12 +5,12 @@ use crate::border::parts::BENDING;
 use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 
-/// Modes that may be told.
+/// Modes that may be configured.
 pub(crate) const MODES: usize = if BENDING { 2 } else { 0 };
 /// Share of what is left of the swing that is learnt in a tick. The double of it makes the observer swing by itself near the
 /// slowest modes that it can tell.
 pub(crate) const LEARNT: f32 = 1.0 / 8.0;
-/// Centre of what is kept apart, over the frequency told. Above the centre the rest of the swing leads, and is damped; below it
+/// Centre of what is kept apart, over the configured frequency. Above the centre the rest of the swing leads and is damped; below it
 /// is late, and is driven.
 const CENTRE: f32 = 0.97;
 /// Most that the rest has to be lengthened by: what swings more slowly the observer follows so well that it is motion.
@@ -27,7 +27,7 @@ pub(crate) struct BendingMode<S> {
     pub(crate) gain: Vec2<S>,
 }
 
-/// The modes that were told; those that were not neither turn nor learn.
+/// The configured modes; others neither turn nor learn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Modes<S>(pub(crate) [BendingMode<S>; MODES]);
 
@@ -53,10 +53,10 @@ fn turn_and_lead(hz: f32, config: &Config) -> Option<[Vec2<f32>; 2]> {
 impl<S: Scalar> Modes<S> {
     /// Of a valid configuration; `None` where nothing can be kept apart.
     pub(crate) fn new(config: &Config) -> Option<Self> {
-        let told = [config.bending_first_hz, config.bending_second_hz];
+        let configured = [config.bending_first_hz, config.bending_second_hz];
         let mut modes = [BendingMode::default(); MODES];
         let mut any = false;
-        for (mode, hz) in modes.iter_mut().zip(told) {
+        for (mode, hz) in modes.iter_mut().zip(configured) {
             if let Some([turn, lead]) = turn_and_lead(hz, config) {
                 let taken = |v: Vec2<f32>| Vec2::new(S::from_f32(v.x), S::from_f32(v.y));
                 *mode = BendingMode {

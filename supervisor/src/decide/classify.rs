@@ -26,7 +26,7 @@ const NO_SHARE: f32 = 1e-9;
 /// Whirl is faster, rest is slower than these shares of the square of the lift-off speed, which is 1.
 const WHIRL_SPEED_SQUARED: f32 = 0.1;
 const REST_SPEED_SQUARED: f32 = 0.05;
-/// Share of the speed made up by the observer that may be wrong, as masses and forces are told.
+/// Share of the speed made up by the observer that may be wrong, as masses and forces are configured.
 const DOUBT: f32 = 0.25;
 /// Rest ends only beyond this share, so that noise does not end it.
 const MOVING_SPEED_SQUARED: f32 = 0.2;

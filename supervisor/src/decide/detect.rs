@@ -153,7 +153,7 @@ impl Detector {
             unavoidable: false,
         };
         if let Some(coupling) = coupling {
-            // The observer is told of it and takes it for no load.
+            // The observer knows of it and takes it for no load.
             contact.load = contact.load + coupling.known.dot(normal);
         }
         let outward = contact.radial_speed - test.margin;

@@ -11,7 +11,7 @@ use crate::decide::phase::Phase;
 use crate::number::scalar::Scalar;
 use crate::number::words::{Words, words_of_fields};
 
-/// Speeds up to here are no sign of anything: what told noise and slow motion come to \[lift-off speeds\].
+/// Speeds up to here are no sign of anything: what configured noise and slow motion come to \[lift-off speeds\].
 const ORDINARY: f32 = 0.2;
 /// So much above the usual an outward speed has to be to count.
 const MARGIN: f32 = 1.25;

@@ -1,4 +1,4 @@
-//! Bending that was told: what swings in the reading at a natural frequency of the shaft is none of the rigid rotor's motion.
+//! Configured bending: what swings in the reading at a natural frequency of the shaft is none of the rigid rotor's motion.
 //!
 //! The force damps what swings in the reading up to a frequency, and drives it above (5.12b). So the observer keeps that part apart
 //! (5.7b), and what is decided is decided for the rest.

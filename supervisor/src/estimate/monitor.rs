@@ -1,4 +1,4 @@
-//! Whether the drive does what it is told, where its force is measured.
+//! Whether the drive does what is commanded, where its force is measured.
 
 use crate::border::coeffs::Coeffs;
 use crate::border::parts::AXIS_MONITOR;

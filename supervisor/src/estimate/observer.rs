@@ -325,11 +325,11 @@ impl<S: Scalar> Observer<S> {
     pub(crate) fn commanded(&mut self, force: Vec2<S>) {
         self.were_late <<= 1;
         self.newest = self.newest.wrapping_add(1);
-        self.put(force);
+        self.replace_newest(force);
     }
 
     #[inline]
-    fn put(&mut self, force: Vec2<S>) {
+    fn replace_newest(&mut self, force: Vec2<S>) {
         if let Some(newest) = self.commands.get_mut(slot(self.newest)) {
             *newest = force;
         }
@@ -345,7 +345,7 @@ impl<S: Scalar> Observer<S> {
         };
         self.late = self.command(self.newest);
         self.were_late |= 1;
-        self.put(before);
+        self.replace_newest(before);
     }
 
     /// After a change of the units of length, speed and force, and of the length of a tick.

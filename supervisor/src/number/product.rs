@@ -234,17 +234,17 @@ mod tests {
     }
 
     fn same<const SHIFT: u32>(a: i32, b: i32, wide: i64) {
-        let said = format!("{a}·{b}, {SHIFT}");
+        let case = format!("{a}·{b}, {SHIFT}");
         let cut = saturated(wide >> SHIFT);
-        assert_eq!(halves::narrowed::<SHIFT>(a, b), cut, "{said}");
-        assert_eq!(super::narrowed::<SHIFT>(a, b), cut, "{said}");
+        assert_eq!(halves::narrowed::<SHIFT>(a, b), cut, "{case}");
+        assert_eq!(super::narrowed::<SHIFT>(a, b), cut, "{case}");
         for (c, d) in [(a, b), (b, b), (-1, a), (i32::MIN, b), (b, 0x1_0001)] {
             let sum = wide.saturating_add(i64::from(c) * i64::from(d));
             let cut = saturated(sum >> SHIFT);
             let sum = halves::narrowed_sum::<SHIFT>(a, b, c, d);
-            assert_eq!(sum, cut, "{said}, and {c}·{d}");
+            assert_eq!(sum, cut, "{case}, and {c}·{d}");
             let sum = super::narrowed_sum::<SHIFT>([a, b], [c, d]);
-            assert_eq!(sum, cut, "{said}, and {c}·{d}");
+            assert_eq!(sum, cut, "{case}, and {c}·{d}");
         }
     }
 }

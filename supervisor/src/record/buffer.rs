@@ -12,7 +12,7 @@ pub(crate) const STATE_WORDS: usize = 124 + 4 * MODES;
 /// Values of a configuration.
 pub(crate) const CONFIG_WORDS: usize = crate::border::config::PARAMETERS.len();
 /// Words of [`FrozenHeader`].
-const CLOSED_WORDS: usize = 7;
+const HEADER_WORDS: usize = 7;
 /// Words of a [`crate::account::severity::Severity`] and of [`crate::account::tally::Units`] of numbers of 64 bits; fewer of others.
 const SEVERITY_WORDS: usize = 21;
 const UNITS_WORDS: usize = 9;
@@ -52,7 +52,7 @@ pub(crate) struct FrozenHeader {
 impl FrozenHeader {
     /// In as few words as it goes: a tick that freezes has little stack for more.
     #[inline]
-    pub(crate) fn words(&self) -> [u32; CLOSED_WORDS] {
+    pub(crate) fn words(&self) -> [u32; HEADER_WORDS] {
         let [plane, planes] = self.plane;
         let flags = [self.keeps, self.is_new, self.on, self.coast_down];
         let flags = (flags.into_iter().rev()).fold(0, |sum, flag| sum << 1 | u8::from(flag));
@@ -67,9 +67,9 @@ impl FrozenHeader {
         ]
     }
 
-    pub(crate) fn from_words(words: [u32; CLOSED_WORDS]) -> Self {
-        let [said, written, ticks, since, stretches, sequence, dropped] = words;
-        let [plane, planes, mode, flags] = said.to_le_bytes();
+    pub(crate) fn from_words(words: [u32; HEADER_WORDS]) -> Self {
+        let [packed, written, ticks, since, stretches, sequence, dropped] = words;
+        let [plane, planes, mode, flags] = packed.to_le_bytes();
         Self {
             plane: [plane, planes],
             written,
@@ -105,7 +105,7 @@ pub(crate) struct RecordBuffer<const N: usize> {
     /// The same at its end.
     pub(crate) closing: Cells<SEVERITY_WORDS>,
     pub(crate) closing_units: Cells<UNITS_WORDS>,
-    pub(crate) closed: Cells<CLOSED_WORDS>,
+    pub(crate) closed: Cells<HEADER_WORDS>,
     pub(crate) entries: [Cells<ENTRY_WORDS>; N],
     pub(crate) track: Track,
 }
@@ -202,7 +202,7 @@ impl<const N: usize> RecordBuffer<N> {
     }
 
     /// By the tick: goes on recording.
-    pub(crate) fn take(&self) {
+    pub(crate) fn resume(&self) {
         self.owner.store(RECORDS, Ordering::Relaxed);
     }
 }

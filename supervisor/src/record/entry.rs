@@ -1,4 +1,4 @@
-//! An entry of the flight record: one tick, by what it was told and what came of it.
+//! An entry of the flight record: one tick, by its inputs and its outcome.
 //!
 //! The slow track of a record: extremes over stretches of ticks that grow with the time since the event began, so that few
 //! words reach from its first milliseconds to seconds.
@@ -8,7 +8,7 @@ use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 use crate::number::words::{Cells, Words as _};
 
-/// One tick, 48 bytes: all that it depends on but for what was before, and what came of it. Numbers are those of the core, per
+/// One tick, 48 bytes: all that it depends on but for what was before, and its outcome. Numbers are those of the core, per
 /// unit, as their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -109,7 +109,7 @@ fn packed_flags<S: Scalar>(command: &CoreCommand<S>) -> u32 {
     command.mode as u32 | u32::from(limits) << 8 | command.events.bits() << 16
 }
 
-/// Lays what a tick is told into the words of its entry …
+/// Writes a tick's inputs into the words of its entry …
 #[inline]
 pub(crate) fn write_sample<S: Scalar>(sample: &CoreSample<S>, entry: &Cells<ENTRY_WORDS>) {
     let cells = entry.all();

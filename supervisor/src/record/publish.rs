@@ -115,7 +115,7 @@ impl Latest {
 
     /// By the tick's side alone; with units where they may have changed.
     #[inline]
-    pub(crate) fn put<S: Scalar>(&self, tally: &Tally<S>, units: Option<&Units<S>>) {
+    pub(crate) fn publish<S: Scalar>(&self, tally: &Tally<S>, units: Option<&Units<S>>) {
         let version = self.version.load(Ordering::Relaxed);
         self.version.store(version | 1, Ordering::Relaxed);
         // Who sees a word of what follows sees that it is being written.
@@ -152,7 +152,7 @@ impl Latest {
 
     /// The mode alone, of a tick that publishes nothing else.
     #[inline]
-    pub(crate) fn put_mode(&self, mode: Mode) {
+    pub(crate) fn publish_mode(&self, mode: Mode) {
         set(self.tally.all(), 0, mode as u32);
     }
 

@@ -1,4 +1,4 @@
-//! Flight recorder, the tick's side of it: writes what the ticks of an event were told and what came of it, from a state on from
+//! Flight recorder, the tick's side of it: writes inputs and outcome of the ticks of an event, from a state on from
 //! which they can be replayed; a slow track that reaches to its end; and events for the background task.
 
 use crate::account::severity::{Fastest, Severity};
@@ -220,9 +220,9 @@ impl<S: Scalar> Recorder<S> {
         matches!(self.progress, Progress::Armed | Progress::Triggered(1..))
     }
 
-    /// Takes in what a tick is told. Before the tick, which needs the registers for something else then.
+    /// Takes in a tick's inputs. Before the tick, which needs the registers for something else then.
     #[inline]
-    pub(crate) fn told<const N: usize>(
+    pub(crate) fn push_sample<const N: usize>(
         &mut self,
         buffer: &RecordBuffer<N>,
         sample: &CoreSample<S>,
@@ -442,7 +442,7 @@ impl<S: Scalar> Recorder<S> {
             self.keeps = false;
             self.coast_down = false;
             self.track.clear();
-            buffer.take();
+            buffer.resume();
         }
     }
 
@@ -455,7 +455,7 @@ impl<S: Scalar> Recorder<S> {
     pub(crate) fn restart<const N: usize>(&mut self, buffer: &RecordBuffer<N>) {
         let config = Config::from_values(self.config);
         *self = Self::new::<N>(&config, self.plane);
-        buffer.take();
+        buffer.resume();
     }
 
     /// What comes now is of another event.

@@ -32,7 +32,7 @@ const STRETCHES: usize = MOST_WORDS / STRETCH_WORDS;
 pub enum Part {
     /// What the record is: [`Head`].
     Head = u32::from_le_bytes(*b"AMBR"),
-    /// What came of the event: [`Summary`].
+    /// Outcome of the event: [`Summary`].
     Summary = u32::from_le_bytes(*b"SUMM"),
     /// Values of the configuration, in the order of [`crate::PARAMETERS`].
     Config = u32::from_le_bytes(*b"CONF"),
@@ -134,7 +134,7 @@ impl Head {
 /// [`Head::state_at`] where no state is of use.
 pub const NO_STATE: u32 = u32::MAX;
 
-/// What came of an event. Counts and maxima are those of the event, not those since the supervisor was made.
+/// Outcome of an event. Counts and maxima are those of the event, not those since the supervisor was made.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Summary {
     /// [`crate::Mode`] in which it ended, as a number: `Levitated` where the levitation controller has the bearing again.
@@ -232,7 +232,7 @@ impl<'a, S: Scalar, const N: usize> Record<'a, S, N> {
         self.closed.sequence
     }
 
-    /// What came of the event.
+    /// Outcome of the event.
     pub fn summary(&self) -> Summary {
         let (buffer, closed) = (self.buffer, &self.closed);
         let opening = match (closed.keeps, closed.is_new) {

@@ -189,7 +189,7 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
         self.first_half(sample)
     }
 
-    /// The second plane's half, with a sample of now that has the number of the first one's; what the tick came to as a whole.
+    /// The second plane's half, with a sample of now that has the number of the first one's; the outcome of the tick as a whole.
     #[inline(never)]
     pub fn tick_second(&mut self, half: &HalfTick, sample: &Sample) -> RotorCommand {
         let command = self.second_half(half, sample);

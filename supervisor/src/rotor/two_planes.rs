@@ -130,7 +130,7 @@ impl<const RECORD: usize> RotorSupervisor<RECORD> {
         self.ticker().second_half(half, sample)
     }
 
-    /// The same per unit of each plane, without what the whole machine is told: what a record is replayed with.
+    /// The same per unit of each plane, without the inputs of the whole machine: what a record is replayed with.
     pub fn tick_per_unit(&mut self, samples: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
         self.ticker().per_unit(samples)
     }

@@ -392,7 +392,7 @@ impl<S: Scalar> Guard<S> {
             }
         }
         let known = self.age != NEVER;
-        let way = way_in(u32::from(self.age), coeffs) + self.innovation.untold(coeffs);
+        let way = way_in(u32::from(self.age), coeffs) + self.innovation.excess_noise(coeffs);
         let step = position - self.last_good;
         if known && step.exceeds(way) {
             return (RejectReason::Slew, bad_coordinates(step, way));

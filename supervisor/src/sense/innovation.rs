@@ -91,12 +91,12 @@ impl<S: Scalar> Innovation<S> {
         self.doubted > 0
     }
 
-    /// How much farther than was told noise may take a sample.
-    pub(crate) fn untold(&self, coeffs: &Coeffs<S>) -> S {
+    /// How much farther than was configured noise may take a sample.
+    pub(crate) fn excess_noise(&self, coeffs: &Coeffs<S>) -> S {
         (self.level - coeffs.guard.configured_noise).max(S::ZERO) * S::from_f32(DOUBTED_FROM)
     }
 
-    /// Whether the noise leaves a speed by which an approach can be told.
+    /// Whether the noise leaves a speed by which an approach can be detected.
     #[inline]
     pub(crate) fn is_quiet(&self, coeffs: &Coeffs<S>) -> bool {
         self.level <= coeffs.guard.quiet_noise

@@ -95,7 +95,7 @@ bitflags::bitflags! {
         const LOST = Self::X_LOST.bits() | Self::Y_LOST.bits();
         /// What a status says.
         const SAID = Self::ON.bits() | Self::SHADOW.bits() | Self::LOST.bits() | Self::LATE.bits();
-        /// What the observer has to be told before the tick.
+        /// What the observer has to know before the tick.
         const UNUSUAL = Self::FAULTY.bits() | Self::ANEW.bits() | Self::LATE.bits() | Self::MISSED.bits();
     }
 }

@@ -27,7 +27,7 @@ words_of_fields!(Coordinate<S> { last, seen, way, stuck, unchanged, awaited });
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct StuckDetector<S> {
     at: [Coordinate<S>; 2],
-    /// Step of the converter, which may be coarser than was told.
+    /// Step of the converter, which may be coarser than was configured.
     step: S,
 }
 

@@ -58,7 +58,7 @@ impl Machine {
     }
 
     /// A tick under the last command; then this one.
-    fn carry_on(&mut self, command_n: [f32; 2]) {
+    fn advance(&mut self, command_n: [f32; 2]) {
         let c = Config::example();
         let part_s = TICK_S / f64::from(PARTS);
         for _ in 0..PARTS {
@@ -113,7 +113,7 @@ fn levitate(config: &Config, wiring: &Wiring) -> (Supervisor<64>, Finding, u32) 
             (sequence, read_m, levitation_n),
             300.0,
         );
-        machine.carry_on(command);
+        machine.advance(command);
         let finding = supervisor.report().checked.finding;
         if finding != Finding::NotYet {
             return (supervisor, finding, sequence);
@@ -363,7 +363,7 @@ fn what_was_not_seen_is_not_trusted() {
             ..Sample::default()
         });
         assert_eq!(command.force_n, levitation_n);
-        machine.carry_on(command.force_n);
+        machine.advance(command.force_n);
     }
     assert_eq!(supervisor.report().checked.finding, Finding::NotYet);
 }
@@ -455,7 +455,7 @@ fn a_rotor_acts_once_both_planes_have_passed() {
         }
         let commands = rotor.tick(&samples).planes;
         for (end, command) in ends.iter_mut().zip(commands) {
-            end.carry_on(command.force_n);
+            end.advance(command.force_n);
         }
         seconds = [0, 1].map(|end| rotor.plane(end).report().checked.finding == Finding::Passed);
         if seconds == [true; 2] {

@@ -140,7 +140,7 @@ proptest! {
             Err(error) if error.contradiction.is_none() => Err(error.parameter().name),
             _ => Ok(()),
         };
-        // A noise that is much for the clearance is told by the band, which the table has before the contact's stiffness.
+        // A noise that is much for the clearance is reported by the band, which the table has before the contact's stiffness.
         let in_doubt = f64::from(b.sensor_noise_m) > 0.07 * f64::from(b.clearance_m);
         let by_band = refused == Err("contact_band");
         match wrong.map(|(name, _)| *name) {

@@ -1,4 +1,4 @@
-//! A drive that does not do what it is told, where its force is measured: what is noticed, what is not, and what follows.
+//! A drive that does not do what is commanded, where its force is measured: what is noticed, what is not, and what follows.
 
 use proptest::prelude::*;
 use supervisor::{Command, Config, Events, Mode, Sample, Status, Supervisor};
@@ -8,7 +8,7 @@ use test_support::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample};
 type Makes = fn([f32; 2]) -> [f32; 2];
 
 /// A supervisor on a rotor that whirls on the wall, with an amplifier behind it.
-struct Bench {
+struct DriveLoop {
     supervisor: Supervisor<64>,
     sequence: u32,
     /// Commands on their way, the oldest first.
@@ -17,7 +17,7 @@ struct Bench {
     delivered_n: [f32; 2],
 }
 
-impl Bench {
+impl DriveLoop {
     fn new(config: &Config, lag_s: f32, delay: usize) -> Self {
         Self {
             supervisor: Supervisor::new(config).unwrap(),
@@ -88,12 +88,12 @@ proptest! {
         commands in prop::collection::vec(([-1000.0..1000.0_f32, -1000.0..1000.0_f32], 1..40_u32), 1..60),
     ) {
         let with = Config { fault_ticks: fault_ticks as f32, ..config() };
-        let mut bench = Bench::new(&with, lag * with.amplifier_lag_s, delay);
+        let mut drive = DriveLoop::new(&with, lag * with.amplifier_lag_s, delay);
         for (levitation_n, ticks) in commands {
             for _ in 0..ticks {
                 // The levitation controller commands what it likes.
-                let now = in_the_middle(bench.sequence + 1, levitation_n, [0.0; 2]);
-                let command = bench.tick_of(now, |due| due.map(|force_n| weak * force_n));
+                let now = in_the_middle(drive.sequence + 1, levitation_n, [0.0; 2]);
+                let command = drive.tick_of(now, |due| due.map(|force_n| weak * force_n));
                 prop_assert!(!command.events.contains(Events::AXIS_LOST), "{:?}", command);
             }
         }
@@ -147,16 +147,16 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
             fault_ticks: 5.0,
             ..config()
         };
-        let mut bench = Bench::new(&with, with.amplifier_lag_s, 1);
+        let mut drive = DriveLoop::new(&with, with.amplifier_lag_s, 1);
         for _ in 0..300 {
-            let command = bench.tick(OBEYS, Status::APPLIED_VALID);
+            let command = drive.tick(OBEYS, Status::APPLIED_VALID);
             assert!(!command.events.contains(Events::AXIS_LOST), "{name}");
         }
         let commands: Vec<_> = (0..500)
             .map(|i| match i {
                 // A tick without a measured force ends no rest.
-                _ if i % 100 == 99 => bench.tick(makes, Status::empty()),
-                _ => bench.tick(makes, Status::APPLIED_VALID),
+                _ if i % 100 == 99 => drive.tick(makes, Status::empty()),
+                _ => drive.tick(makes, Status::APPLIED_VALID),
             })
             .collect();
         let with = |event| commands.iter().filter(move |c| c.events.contains(event));
@@ -169,13 +169,13 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
                 assert!(zero.iter().filter(|zero| **zero).count() <= 1, "{name}");
                 continue;
             }
-            // A turn of the whirl is 63 ticks, and an axis can only be told while it delivers against a command.
+            // A turn of the whirl is 63 ticks, and an axis can only be judged while it delivers against a command.
             let first = zero.iter().position(|zero| *zero);
             assert!(first.is_some_and(|i| i <= 70), "{name}: {first:?}");
         }
         // In order again, it is believed again.
         let after: Vec<_> = (0..200)
-            .map(|_| bench.tick(OBEYS, Status::APPLIED_VALID))
+            .map(|_| drive.tick(OBEYS, Status::APPLIED_VALID))
             .collect();
         let lost = |c: &Command| c.events.contains(Events::AXIS_LOST);
         assert!(!after[60..].iter().any(lost), "{name}");
@@ -265,18 +265,18 @@ fn an_axis_that_is_reported_lost_is_not_judged() {
 #[test]
 fn off_and_on_ends_a_rest() {
     for measured in [Status::APPLIED_VALID, Status::empty()] {
-        let mut bench = Bench::new(&config(), 1.6e-4, 1);
-        let mut ticks = (0..200).map(|_| bench.tick(|[x, y]| [-x, -y], Status::APPLIED_VALID));
+        let mut drive = DriveLoop::new(&config(), 1.6e-4, 1);
+        let mut ticks = (0..200).map(|_| drive.tick(|[x, y]| [-x, -y], Status::APPLIED_VALID));
         assert!(ticks.any(|command| command.events.contains(Events::AXIS_LOST)));
-        bench.sequence += 1;
-        let position_m = on_circle(RADIUS_M, WHIRL_STEP * bench.sequence as f32);
-        let mut off = sample(bench.sequence, position_m);
+        drive.sequence += 1;
+        let position_m = on_circle(RADIUS_M, WHIRL_STEP * drive.sequence as f32);
+        let mut off = sample(drive.sequence, position_m);
         off.status = (off.status | measured) - Status::BEARING_ON;
-        bench.supervisor.tick(&off);
+        drive.supervisor.tick(&off);
         // A turn of the whirl: both axes are needed.
         let mut largest_n = [0.0_f32; 2];
         for _ in 0..63 {
-            let command = bench.tick(OBEYS, Status::APPLIED_VALID);
+            let command = drive.tick(OBEYS, Status::APPLIED_VALID);
             assert!(!command.events.contains(Events::AXIS_LOST));
             largest_n = [0, 1].map(|k| largest_n[k].max(command.force_n[k].abs()));
         }
@@ -289,7 +289,7 @@ fn off_and_on_ends_a_rest() {
 /// Requirement: SR-09
 #[test]
 fn in_shadow_nothing_is_taken_from_the_levitation_controller() {
-    let mut bench = Bench::new(&config(), 1.6e-4, 1);
+    let mut drive = DriveLoop::new(&config(), 1.6e-4, 1);
     for i in 0..600_u32 {
         let shadow = i < 590;
         let full = if i / 50 % 2 == 0 { 900.0 } else { -900.0 };
@@ -297,7 +297,7 @@ fn in_shadow_nothing_is_taken_from_the_levitation_controller() {
         now.levitation_n = [full, -300.0];
         now.status |= Status::APPLIED_VALID;
         now.status.set(Status::SHADOW, shadow);
-        let command = bench.tick_of(now, |[x, y]| [-x, y]);
+        let command = drive.tick_of(now, |[x, y]| [-x, y]);
         assert!(!shadow || command.force_n == now.levitation_n);
         assert!(!command.events.contains(Events::AXIS_LOST));
     }
@@ -335,15 +335,15 @@ fn an_axis_is_lost_and_tried_again_after_its_time_to_the_tick() {
 #[test]
 fn late_commands_in_a_row_are_a_line_that_is_a_tick_longer() {
     for (status, late_ticks) in [(Status::LATE, 399), (Status::empty(), 0)] {
-        let mut bench = Bench::new(&config(), 1.6e-4, 1);
+        let mut drive = DriveLoop::new(&config(), 1.6e-4, 1);
         for i in 0..600 {
             let status = if i > 200 { status } else { Status::empty() };
-            let command = bench.tick(OBEYS, status | Status::APPLIED_VALID);
+            let command = drive.tick(OBEYS, status | Status::APPLIED_VALID);
             assert!(!command.events.contains(Events::AXIS_LOST));
             if i == 200 {
-                bench.line.insert(0, bench.line[0]);
+                drive.line.insert(0, drive.line[0]);
             }
         }
-        assert_eq!(bench.supervisor.report().late_ticks, late_ticks);
+        assert_eq!(drive.supervisor.report().late_ticks, late_ticks);
     }
 }

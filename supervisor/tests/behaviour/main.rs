@@ -1,4 +1,4 @@
-//! What the supervisor does at its border: what it promises, what it is told wrong, how it comes back, what it writes down.
+//! What the supervisor does at its border: what it promises, what is configured wrong, how it comes back, what it writes down.
 
 #![allow(
     clippy::disallowed_methods,

@@ -143,7 +143,7 @@ fn an_engagement_without_contact_does_not_spend_the_record() {
     );
 }
 
-/// A record that nobody takes away does not change and holds up no tick; the events that come meanwhile are counted, and told in
+/// A record that nobody takes away does not change and holds up no tick; the events that come meanwhile are counted, and reported in
 /// the next one.
 #[test]
 fn what_is_in_no_record_is_counted() {

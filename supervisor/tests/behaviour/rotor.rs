@@ -1,4 +1,4 @@
-//! Both ends of one rotor: who is told what, and records that belong together.
+//! Both ends of one rotor: who is informed of what, and records that belong together.
 
 use supervisor::{
     Command, Config, Events, Mode, PlanePositions, RotorCommand, RotorSupervisor, Sample, Shaft,
@@ -120,7 +120,7 @@ fn bits(command: &RotorCommand) -> String {
     )
 }
 
-/// From the tick on at which one end engages the other's firmware is told, and its supervisor stays out of it.
+/// From the tick on at which one end engages the other's firmware is informed, and its supervisor stays out of it.
 #[test]
 fn an_engagement_is_told_to_the_other_end() {
     for end in [0, 1] {
@@ -131,9 +131,9 @@ fn an_engagement_is_told_to_the_other_end() {
         let engaged = engaged_at(&commands, end).unwrap();
         assert!((20..20 + OUT as usize).contains(&engaged), "{engaged}");
         for (i, command) in commands.iter().enumerate() {
-            let mut told = [false; 2];
-            told[1 - end] = i >= engaged;
-            assert_eq!(command.other_engaged, told, "tick {i}");
+            let mut informed = [false; 2];
+            informed[1 - end] = i >= engaged;
+            assert_eq!(command.other_engaged, informed, "tick {i}");
             assert_eq!(command.planes[1 - end].mode, Mode::Levitated);
         }
         assert_eq!(commands[150].planes[end].mode, Mode::BackwardWhirl);
@@ -200,7 +200,7 @@ fn records_of_one_event_are_of_the_same_ticks() {
         panic!("{} records", read.len())
     };
     assert_eq!(first, second);
-    // The event is over: nobody is told of it any more, and the next one is read again.
+    // The event is over: nobody is informed of it any more, and the next one is read again.
     let commands = run(&mut rotor, 1000..1001, [None, None]);
     assert_eq!(commands[0].other_engaged, [false; 2]);
     run(&mut rotor, 1001..2000, [Some(1020), None]);
@@ -209,12 +209,12 @@ fn records_of_one_event_are_of_the_same_ticks() {
     assert_eq!(again, [0, 1]);
 }
 
-/// An engagement without a touch leaves no record: nobody waits for one, and nobody is told of it any more.
+/// An engagement without a touch leaves no record: nobody waits for one, and nobody is informed of it any more.
 #[test]
 fn an_engagement_without_a_touch_holds_nothing_up() {
     let mut rotor = rotor(&config());
     let mut read = Vec::new();
-    let (mut engaged, mut told) = (false, false);
+    let (mut engaged, mut informed) = (false, false);
     for i in 0..1200_u32 {
         // The first end comes at the wall and turns round before it; later the second lands.
         let near = match i.checked_sub(20) {
@@ -227,15 +227,15 @@ fn an_engagement_without_a_touch_holds_nothing_up() {
         let second = led(i, 600).map(|x| x + noise);
         let command = rotor.tick(&[sample(i, first), sample(i, second)]);
         engaged |= command.planes[0].events.contains(Events::ENGAGED);
-        told = command.other_engaged[1];
+        informed = command.other_engaged[1];
         if i == 590 {
-            assert!(engaged && !told, "{engaged} {told}");
+            assert!(engaged && !informed, "{engaged} {informed}");
             assert_eq!(rotor.plane(0).report().landings, 0);
         }
         rotor.collect(|end, _| read.push(end));
     }
     assert_eq!(read, [0, 1]);
-    assert!(!told);
+    assert!(!informed);
 }
 
 /// One end's request is the machine's, and stays.

@@ -59,7 +59,7 @@ fn an_older_number_is_no_new_sample() {
     assert!(report.missed_ticks <= 2, "{}", report.missed_ticks);
 }
 
-/// Missed and repeated ticks are told and counted, and a repeated sample is not used twice.
+/// Missed and repeated ticks are reported and counted, and a repeated sample is not used twice.
 /// Requirement: SR-20
 #[test]
 fn missed_and_repeated_ticks_are_counted() {

@@ -173,16 +173,16 @@ fn a_full_queue_of_events_keeps_the_first_and_tells_of_the_loss() {
     for i in 0..40 {
         assert_eq!(supervisor.tick(&late(i)).events, Events::LATE);
     }
-    let told = |supervisor: &mut Supervisor<64>| {
+    let queued = |supervisor: &mut Supervisor<64>| {
         let events = std::iter::from_fn(|| supervisor.next_event());
         events.map(|e| (e.sequence, e.events)).collect::<Vec<_>>()
     };
     let first: Vec<_> = (0..16).map(|i| (i, Events::LATE)).collect();
-    assert_eq!(told(&mut supervisor), first);
+    assert_eq!(queued(&mut supervisor), first);
     supervisor.tick(&late(40));
     supervisor.tick(&late(41));
     let next = [(40, Events::LATE | Events::QUEUE_FULL), (41, Events::LATE)];
-    assert_eq!(told(&mut supervisor), next);
+    assert_eq!(queued(&mut supervisor), next);
 }
 
 /// A command that came a tick late is taken to have left its tick to the one before: the same estimate, and
@@ -191,11 +191,11 @@ fn a_full_queue_of_events_keeps_the_first_and_tells_of_the_loss() {
 #[test]
 fn a_late_command_leaves_its_tick_to_the_one_before() {
     let levitation = |i: u32| [10.0 * (i % 7) as f32, -20.0 * (i % 5) as f32];
-    let (mut told, mut commanded) = (
+    let (mut informed, mut commanded) = (
         Supervisor::<64>::new(&config()).unwrap(),
         Supervisor::<64>::new(&config()).unwrap(),
     );
-    let mut untold = told.clone();
+    let mut uninformed = informed.clone();
     let mut differs = false;
     for i in 0..400_u32 {
         let mut s = sample(
@@ -206,7 +206,7 @@ fn a_late_command_leaves_its_tick_to_the_one_before() {
         s.status |= Status::SHADOW;
         s.levitation_n = levitation(i);
         let late = i % 10 == 9;
-        let without = untold.tick(&s);
+        let without = uninformed.tick(&s);
         let as_if = Sample {
             levitation_n: levitation(if i % 10 == 8 { i - 1 } else { i }),
             ..s
@@ -215,12 +215,12 @@ fn a_late_command_leaves_its_tick_to_the_one_before() {
         if late {
             s.status |= Status::LATE;
         }
-        let a = told.tick(&s);
+        let a = informed.tick(&s);
         assert_eq!(a.events.contains(Events::LATE), late);
         assert_eq!(a.own_n, b.own_n, "tick {i}");
         assert_eq!(a.mode, b.mode);
         differs |= a.own_n != without.own_n;
     }
-    assert!(differs, "being told changes something");
-    assert_eq!(told.report().late_ticks, 40);
+    assert!(differs, "being informed changes something");
+    assert_eq!(informed.report().late_ticks, 40);
 }

@@ -221,7 +221,7 @@ fn a_severity_index_beyond_its_limit_asks_once_to_coast_down() {
     assert!(supervisor.report().coast_down);
 }
 
-/// An index that is beyond its limit is told whichever of the two has moved: once, and again only after the limit was
+/// An index that is beyond its limit is reported whichever of the two has moved: once, and again only after the limit was
 /// above it.
 #[test]
 fn a_limit_that_is_lowered_below_the_index_asks() {

@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rounds: usize = std::env::args().nth(2).map_or(Ok(5), |n| n.parse())?;
     let plan = Plan::load(&path)?;
     let scenes = (0..plan.runs())
-        .map(|run| plan.spec(&plan.drawn(run))?.resolve())
+        .map(|run| plan.spec(&plan.point(run))?.resolve())
         .collect::<Result<Vec<Scene>, _>>()?;
     let runs = plan.runs() as f64;
     let host = std::env::current_exe()?.with_file_name("firmware-host");

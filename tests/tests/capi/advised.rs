@@ -29,7 +29,7 @@ fn advised(scene: &Path, more: &str) -> String {
 }
 
 /// What a program of this text says, compiled as this language.
-fn said(compiler: &str, standard: &str, text: &str, library: &Path) -> Option<String> {
+fn printed(compiler: &str, standard: &str, text: &str, library: &Path) -> Option<String> {
     let folder = TempDir::new().unwrap();
     let extension = if compiler == "cc" { "c" } else { "cpp" };
     let source = folder.path().join("config").with_extension(extension);
@@ -94,7 +94,7 @@ fn an_advised_configuration_is_c_and_cpp() {
                 eprintln!("not checked as C++: g++ is missing");
                 continue;
             }
-            let Some(printed) = said(compiler, standard, &text, &library) else {
+            let Some(printed) = printed(compiler, standard, &text, &library) else {
                 continue;
             };
             let printed = printed.lines().map(|line| {
@@ -128,7 +128,7 @@ int main(void) {
             eprintln!("not checked as C++: g++ is missing");
             continue;
         }
-        let Some(printed) = said(compiler, standard, &text, &library) else {
+        let Some(printed) = printed(compiler, standard, &text, &library) else {
             continue;
         };
         let advice: serde_json::Value = serde_json::from_str(&advised(&scene, "--json")).unwrap();

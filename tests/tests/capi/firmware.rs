@@ -65,8 +65,8 @@ fn c_on_this_machine_does_what_rust_does() {
         return;
     };
     good(&output);
-    let said = good(&Command::new(program).output().unwrap());
-    assert_eq!(said.lines().last(), Some(summary_of_rust().as_str()));
+    let text = good(&Command::new(program).output().unwrap());
+    assert_eq!(text.lines().last(), Some(summary_of_rust().as_str()));
 }
 
 /// Links firmware of a main file, the rig, the board and a library; `None` where a tool is missing.
@@ -86,7 +86,7 @@ fn linked(target: Target, main: &Path, library: &Path, image: &Path) -> Option<O
 }
 
 /// What firmware says in the emulator; `None` where a tool is missing.
-pub(crate) fn said_by(target: Target, main: &Path) -> Option<String> {
+pub(crate) fn output_on(target: Target, main: &Path) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("firmware.elf");
     good(&linked(target, main, &built(target)?, &image)?);
@@ -106,51 +106,51 @@ pub(crate) fn said_by(target: Target, main: &Path) -> Option<String> {
 fn c_firmware_does_what_rust_does() {
     // With an FPU, and with floats in software.
     for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(said) = said_by(target, &capi().join("examples/firmware.c")) else {
+        let Some(text) = output_on(target, &capi().join("examples/firmware.c")) else {
             return;
         };
-        let last = said.lines().last();
-        assert_eq!(last, Some(summary_of_rust().as_str()), "{target:?}: {said}");
-        assert!(said.contains("backward whirl, events 0x0008"), "{said}");
-        assert!(said.contains("record of version 4, "), "{said}");
-        assert!(!said.contains("checksum wrong"), "{said}");
+        let last = text.lines().last();
+        assert_eq!(last, Some(summary_of_rust().as_str()), "{target:?}: {text}");
+        assert!(text.contains("backward whirl, events 0x0008"), "{text}");
+        assert!(text.contains("record of version 4, "), "{text}");
+        assert!(!text.contains("checksum wrong"), "{text}");
     }
 }
 
 /// Requirement: SR-39
 #[test]
 fn landings_are_counted_over_a_reset() {
-    let Some(said) = said_by(Target::CortexM4F, &beside("kept.c")) else {
+    let Some(text) = output_on(Target::CortexM4F, &beside("kept.c")) else {
         return;
     };
     let landings = |text: &str, begin: &str| -> Vec<u32> {
-        let lines = said.lines().filter_map(|line| line.strip_prefix(begin));
+        let lines = text.lines().filter_map(|line| line.strip_prefix(begin));
         let rests = lines.filter_map(|rest| rest.strip_suffix(text));
         rests.map(|number| number.parse().unwrap()).collect()
     };
     let at_boot = landings(" landings so far", "bearing 1: ");
     let at_end = landings(" landings", "bearing 1: ");
-    assert_eq!((at_boot.len(), at_end.len()), (2, 2), "{said}");
-    assert!(at_boot[0] == 0 && at_end[0] > 0, "{said}");
+    assert_eq!((at_boot.len(), at_end.len()), (2, 2), "{text}");
+    assert!(at_boot[0] == 0 && at_end[0] > 0, "{text}");
     assert_eq!(
         (at_boot[1], at_end[1]),
         (at_end[0], 2 * at_end[0]),
-        "{said}"
+        "{text}"
     );
     // Both courses are the same.
     let summary = summary_of_rust();
-    assert_eq!(said.matches(summary.as_str()).count(), 2, "{said}");
+    assert_eq!(text.matches(summary.as_str()).count(), 2, "{text}");
 }
 
 /// As the page on C says: nothing needs a large stack, and a supervisor of 28 kilobytes is made in its place.
 /// Requirement: SR-36
 #[test]
 fn calls_need_little_stack() {
-    let Some(said) = said_by(Target::CortexM4F, &beside("stack.c")) else {
+    let Some(text) = output_on(Target::CortexM4F, &beside("stack.c")) else {
         return;
     };
     let bytes = |name: &str| -> usize {
-        let line = said
+        let line = text
             .lines()
             .find_map(|l| l.strip_prefix(name)?.strip_prefix(' '));
         line.unwrap().trim().parse().unwrap()
@@ -171,7 +171,7 @@ fn calls_need_little_stack() {
         ("archive-section", 4552),
     ] {
         let needed = bytes(call);
-        assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");
+        assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {text}");
     }
 }
 
@@ -205,9 +205,9 @@ fn a_planted_panic_does_not_link() {
         else {
             return;
         };
-        let said = String::from_utf8_lossy(&output.stderr);
+        let text = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success(), "the planted panic linked");
-        assert!(said.contains("`amb_a_panic_can_be_reached'"), "{said}");
-        assert!(!said.contains("`amb_planted_panic'"), "it is there: {said}");
+        assert!(text.contains("`amb_a_panic_can_be_reached'"), "{text}");
+        assert!(!text.contains("`amb_planted_panic'"), "it is there: {text}");
     }
 }

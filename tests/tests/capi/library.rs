@@ -163,7 +163,7 @@ pub(crate) fn host_program(sources: &[PathBuf], library: &Path, program: &Path) 
 }
 
 /// What a program says that a C file beside these tests and the rig make on the host; `None` where a tool is missing.
-pub(crate) fn said_with_rig(source: &str) -> Option<String> {
+pub(crate) fn output_with_rig(source: &str) -> Option<String> {
     let library = built(Target::Host)?;
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("program");

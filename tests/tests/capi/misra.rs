@@ -21,8 +21,8 @@ fn broken(text: &str, standard: &str) -> BTreeSet<String> {
     cppcheck.arg("-I.").arg("-I").arg(capi().join("include"));
     let output = cppcheck.current_dir(&folder).arg("use.c").output().unwrap();
     good(&output);
-    let said = String::from_utf8_lossy(&output.stderr);
-    let rules = said
+    let shown = String::from_utf8_lossy(&output.stderr);
+    let rules = shown
         .lines()
         .filter_map(|id| id.strip_prefix("misra-c2012-"));
     rules.map(str::to_owned).collect()

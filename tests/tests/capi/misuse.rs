@@ -1,6 +1,6 @@
 //! Every documented misuse, from C.
 
-use crate::library::{beside, said_with_rig};
+use crate::library::{beside, output_with_rig};
 use supervisor_capi::{Code, code::CODES};
 
 /// One plane, a rotor in two, a ledger, and an archive.
@@ -15,10 +15,10 @@ const SOURCES: [&str; 4] = [
 #[test]
 fn every_misuse_gives_its_error_and_text() {
     for source in SOURCES {
-        let Some(said) = said_with_rig(source) else {
+        let Some(output) = output_with_rig(source) else {
             return;
         };
-        assert!(said.ends_with(" checks, 0 failures\n"), "{said}");
+        assert!(output.ends_with(" checks, 0 failures\n"), "{output}");
     }
 }
 
@@ -31,10 +31,10 @@ fn every_code_is_provoked() {
     for row in CODES {
         let name = format!("AMB_{}", row.name);
         assert!(text.contains(&name), "{name} is in no check");
-        let said = row.text.to_str().unwrap();
+        let message = row.text.to_str().unwrap();
         // Success needs no text of its own.
         assert!(
-            row.code == Code::OK || text.contains(&format!("\"{said}\"")),
+            row.code == Code::OK || text.contains(&format!("\"{message}\"")),
             "the text of {name} is in no check"
         );
     }

@@ -44,11 +44,11 @@ fn unpacked(here: &Path) -> Vec<(PathBuf, PathBuf)> {
     pack.arg("--target-dir").arg(here.join("target"));
     let packed = pack.output().unwrap();
     good(&packed);
-    let said = String::from_utf8_lossy(&packed.stderr);
+    let shown = String::from_utf8_lossy(&packed.stderr);
     // Tests of a crate stay with its sources.
     let is_known = |line: &str| line.starts_with("warning: ignoring test `");
-    let mut others = said.lines().filter(|line| !is_known(line));
-    assert!(!others.any(|line| line.contains("warning")), "{said}");
+    let mut others = shown.lines().filter(|line| !is_known(line));
+    assert!(!others.any(|line| line.contains("warning")), "{shown}");
     CRATES
         .map(|(folder, name)| {
             let name = format!("{name}-{}", env!("CARGO_PKG_VERSION"));

@@ -24,7 +24,7 @@ int main(void) {
     static float values[2][AMB_PARAMETERS];
     amb_sample samples[2];
     amb_rotor_command command;
-    uint32_t told = 0, asked = 0;
+    uint32_t others = 0, asked = 0;
     int end;
     for (end = 0; end < 2; end++) {
         memcpy(values[end], rig_config, sizeof rig_config);
@@ -48,11 +48,11 @@ int main(void) {
         }
         for (end = 0; end < 2; end++) {
             rig_actuate(&ends[end], &command.planes[end]);
-            told += command.other_engaged[end];
+            others += command.other_engaged[end];
         }
         asked += command.coast_down;
     }
-    printf("ticks %u told %u coast-down %u hashes 0x%08x 0x%08x\n", (unsigned)ends[0].tick, (unsigned)told,
+    printf("ticks %u engaged %u coast-down %u hashes 0x%08x 0x%08x\n", (unsigned)ends[0].tick, (unsigned)others,
            (unsigned)asked, (unsigned)ends[0].hash, (unsigned)ends[1].hash);
     return 0;
 }

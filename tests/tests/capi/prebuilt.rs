@@ -68,7 +68,7 @@ fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
         assert!(out.join(licence).exists(), "{licence}");
     }
 
-    let mut said = Vec::new();
+    let mut shown = Vec::new();
     if let (Some(mut cc), Some(flags)) = (tool("cc"), flags(&lib)) {
         let program = folder.path().join("two_planes");
         cc.args(STRICT)
@@ -82,7 +82,7 @@ fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
             .env("LD_LIBRARY_PATH", &lib)
             .arg("7")
             .output();
-        said.push(good(&library_path.unwrap()));
+        shown.push(good(&library_path.unwrap()));
     }
     if let Some(mut cmake) = tool("cmake") {
         let project = format!(
@@ -113,7 +113,7 @@ fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
                 .unwrap(),
         );
         for program in ["build/static", "build/shared"] {
-            said.push(good(
+            shown.push(good(
                 &Command::new(sources.join(program))
                     .arg("7")
                     .output()
@@ -135,9 +135,10 @@ fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
         );
     }
     assert!(
-        said.iter()
-            .all(|text| text == &said[0] && text.contains("touches")),
-        "{said:?}"
+        shown
+            .iter()
+            .all(|text| text == &shown[0] && text.contains("touches")),
+        "{shown:?}"
     );
 
     python(folder.path(), &host);
@@ -151,7 +152,7 @@ fn python(folder: &Path, host: &str) {
     };
     let script = std::fs::read_to_string(capi().join("examples/ctypes_tick.py")).unwrap();
     let script = script.replace("x86_64-unknown-linux-gnu", host);
-    let said = good(
+    let shown = good(
         &python
             .arg("-c")
             .arg(script)
@@ -159,9 +160,9 @@ fn python(folder: &Path, host: &str) {
             .output()
             .unwrap(),
     );
-    let lines: Vec<_> = said.lines().collect();
+    let lines: Vec<_> = shown.lines().collect();
     assert_eq!(lines[0], "0 levitated -12.5 N 25.0 N");
-    assert!(lines[9].starts_with("9 approach -"), "{said}");
+    assert!(lines[9].starts_with("9 approach -"), "{shown}");
 }
 
 fn same_bytes_from_elsewhere(folder: &Path, out: &Path, target: &str) {
@@ -188,14 +189,14 @@ fn same_bytes_from_elsewhere(folder: &Path, out: &Path, target: &str) {
         good(&copy.output().unwrap());
     }
     let again = folder.join("again");
-    let said = build(&sources, &again, target);
+    let shown = build(&sources, &again, target);
     // Compiled there, and not found where the first ones were.
     let compiled = format!(
         "Compiling amb-supervisor v{} ({}",
         env!("CARGO_PKG_VERSION"),
         sources.display()
     );
-    assert!(said.contains(&compiled), "{said}");
+    assert!(shown.contains(&compiled), "{shown}");
     let sums = |folder: &Path| -> BTreeSet<String> {
         let sums = std::fs::read_to_string(folder.join("SHA256SUMS")).unwrap();
         sums.lines().map(str::to_owned).collect()

@@ -29,8 +29,8 @@ impl Rig {
         let source = include_str!("../../../supervisor/capi/examples/rig.c");
         let mut values = PARAMETERS.iter().map(|parameter| {
             let element = format!("[AMB_P_{}] = ", parameter.name.to_uppercase());
-            let told = source.split_once(&element);
-            told.map_or(0.0, |(_, rest)| {
+            let found = source.split_once(&element);
+            found.map_or(0.0, |(_, rest)| {
                 let (value, _) = rest.split_once("f,").unwrap();
                 value.parse().unwrap()
             })

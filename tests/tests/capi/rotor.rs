@@ -1,7 +1,7 @@
 //! The supervisor of a rotor in C: what Rust computes, in the emulator too; and the example with a model of its own.
 
-use crate::firmware::said_by;
-use crate::library::{Target, beside, built, capi, good, host_program, said_with_rig};
+use crate::firmware::output_on;
+use crate::library::{Target, beside, built, capi, good, host_program, output_with_rig};
 use crate::rig::Rig;
 use std::process::Command;
 use supervisor::{PlanePositions, RotorSupervisor, Shaft};
@@ -25,7 +25,7 @@ fn pair_of_rust() -> String {
     let config = Rig::config();
     let mut rotor = RotorSupervisor::<512>::new(&shaft(), &[config; 2]).unwrap();
     let mut ends = [Rig::new(), Rig::new()];
-    let (mut told, mut asked) = (0, 0);
+    let (mut others, mut asked) = (0, 0);
     while ends[0].tick < Rig::TICKS {
         if let Some(config) = ends[0].reconfigures() {
             rotor.reconfigure(&shaft(), &[config; 2]).unwrap();
@@ -35,13 +35,13 @@ fn pair_of_rust() -> String {
         for (end, command) in ends.iter_mut().zip(&command.planes) {
             end.actuate(command);
         }
-        told += command.other_engaged.map(u32::from).iter().sum::<u32>();
+        others += command.other_engaged.map(u32::from).iter().sum::<u32>();
         asked += u32::from(command.coast_down);
     }
     let [first, second] = ends;
-    assert!(told > 100 && first.hash != second.hash, "{told}");
+    assert!(others > 100 && first.hash != second.hash, "{others}");
     format!(
-        "ticks {} told {told} coast-down {asked} hashes 0x{:08x} 0x{:08x}",
+        "ticks {} engaged {others} coast-down {asked} hashes 0x{:08x} 0x{:08x}",
         first.tick, first.hash, second.hash
     )
 }
@@ -49,20 +49,20 @@ fn pair_of_rust() -> String {
 /// Requirement: SR-34
 #[test]
 fn a_rotor_in_c_does_what_it_does_in_rust() {
-    let Some(said) = said_with_rig("pair.c") else {
+    let Some(output) = output_with_rig("pair.c") else {
         return;
     };
-    assert_eq!(said.lines().last(), Some(pair_of_rust().as_str()));
+    assert_eq!(output.lines().last(), Some(pair_of_rust().as_str()));
 }
 
 #[test]
 fn a_rotor_in_firmware_does_what_it_does_in_rust() {
     for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(said) = said_by(target, &beside("pair.c")) else {
+        let Some(output) = output_on(target, &beside("pair.c")) else {
             return;
         };
-        let last = said.lines().last();
-        assert_eq!(last, Some(pair_of_rust().as_str()), "{target:?}: {said}");
+        let last = output.lines().last();
+        assert_eq!(last, Some(pair_of_rust().as_str()), "{target:?}: {output}");
     }
 }
 
@@ -81,8 +81,8 @@ fn a_model_of_someone_elses_is_driven() {
     };
     good(&output);
     let run = |blow: &str| -> Vec<(usize, bool)> {
-        let said = good(&Command::new(&program).arg(blow).output().unwrap());
-        let lines = said.lines().map(|line| {
+        let output = good(&Command::new(&program).arg(blow).output().unwrap());
+        let lines = output.lines().map(|line| {
             let (_, figures) = line.split_once(": ").unwrap();
             let (touches, _) = figures.split_once(' ').unwrap();
             (

@@ -21,6 +21,6 @@ fn the_block_is_the_library() {
     cc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(&program);
     let output = cc.output().unwrap();
     good(&output);
-    let said = good(&Command::new(program).output().unwrap());
-    assert_eq!(said, "4000 ticks the same, engaged\n");
+    let text = good(&Command::new(program).output().unwrap());
+    assert_eq!(text, "4000 ticks the same, engaged\n");
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 struct Attempt {
     succeeded: bool,
-    said: String,
+    stderr: String,
 }
 
 /// Compiles and links a program with a header that speaks `header`, where the library's version file
@@ -31,7 +31,7 @@ fn attempt(header: u32, library: u32) -> Option<Attempt> {
     let output = host_program(&sources, folder.path(), &folder.path().join("program"))?;
     Some(Attempt {
         succeeded: output.status.success(),
-        said: String::from_utf8_lossy(&output.stderr).into_owned(),
+        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
     })
 }
 
@@ -39,7 +39,7 @@ fn attempt(header: u32, library: u32) -> Option<Attempt> {
 fn the_same_version_compiles_and_links() {
     let own = supervisor_capi::ABI;
     if let Some(attempt) = attempt(own, own) {
-        assert!(attempt.succeeded, "{}", attempt.said);
+        assert!(attempt.succeeded, "{}", attempt.stderr);
     }
 }
 
@@ -53,8 +53,8 @@ fn another_version_does_not_compile() {
             return;
         };
         assert!(!attempt.succeeded);
-        let says = attempt.said.contains("are of different versions");
-        assert!(says, "{}", attempt.said);
+        let says = attempt.stderr.contains("are of different versions");
+        assert!(says, "{}", attempt.stderr);
     }
 }
 
@@ -68,7 +68,7 @@ fn another_version_does_not_link() {
     };
     assert!(!attempt.succeeded);
     let missing = format!("amb_tick_abi{other}");
-    assert!(attempt.said.contains(&missing), "{}", attempt.said);
+    assert!(attempt.stderr.contains(&missing), "{}", attempt.stderr);
 }
 
 /// The build says of the library what the library says of itself.

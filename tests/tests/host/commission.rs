@@ -47,9 +47,9 @@ fn numbers_of_the_machine_are_found_with_intervals_that_hold() {
     let (folder, trace) = trace();
     let scene = scene_path("commissioning");
     let json = Path::new("--json");
-    let (code, said, _) = commission(&[&trace, Path::new("--machine"), &scene, json]);
+    let (code, got, _) = commission(&[&trace, Path::new("--machine"), &scene, json]);
     assert_eq!(code, Some(0));
-    let parsed: Value = serde_json::from_str(&said).unwrap();
+    let parsed: Value = serde_json::from_str(&got).unwrap();
     for (name, is, within) in [
         ("mass_kg", 12.0, 0.05),
         ("time_to_force_s", 1.5e-4, 0.1),
@@ -64,7 +64,7 @@ fn numbers_of_the_machine_are_found_with_intervals_that_hold() {
     assert_eq!(
         parsed["contradictions"].as_array().unwrap().len(),
         0,
-        "{said}"
+        "{got}"
     );
 
     // As CSV the same, and a wrong mass is a contradiction.
@@ -96,11 +96,11 @@ fn numbers_of_the_machine_are_found_with_intervals_that_hold() {
         ("c", "config[AMB_P_MASS_KG] = 1."),
         ("toml", "mass_kg = 1."),
     ] {
-        let (code, said, _) = commission(&[&trace, Path::new("--format"), Path::new(format)]);
-        assert!(code == Some(0) && said.contains(line), "{said}");
+        let (code, got, _) = commission(&[&trace, Path::new("--format"), Path::new(format)]);
+        assert!(code == Some(0) && got.contains(line), "{got}");
     }
-    let (code, said, _) = commission(&[&trace]);
-    assert!(code == Some(0) && said.contains("--walk"), "{said}");
+    let (code, got, _) = commission(&[&trace]);
+    assert!(code == Some(0) && got.contains("--walk"), "{got}");
 }
 
 /// A walk that goes round gives clearance and centre, one that does not is refused.
@@ -119,10 +119,10 @@ fn a_walk_gives_clearance_and_centre() {
         fs::write(&path, csv).unwrap();
         path
     };
-    let (code, said, _) =
+    let (code, got, _) =
         commission(&[&trace, Path::new("--walk"), &walk(1.0), Path::new("--json")]);
     assert_eq!(code, Some(0));
-    let parsed: Value = serde_json::from_str(&said).unwrap();
+    let parsed: Value = serde_json::from_str(&got).unwrap();
     for (name, is) in [
         ("clearance_m", 2e-4),
         ("retainer_centre_x_m", 2e-5),
@@ -131,8 +131,8 @@ fn a_walk_gives_clearance_and_centre() {
         let [value, ..] = found(&parsed, name);
         assert!((value - is).abs() < 0.02 * 2e-4, "{name}: {value}");
     }
-    let (code, _, said) = commission(&[&trace, Path::new("--walk"), &walk(0.3)]);
-    assert!(code == Some(2) && said.contains("sectors"), "{said}");
+    let (code, _, got) = commission(&[&trace, Path::new("--walk"), &walk(0.3)]);
+    assert!(code == Some(2) && got.contains("sectors"), "{got}");
 }
 
 #[test]
@@ -192,17 +192,17 @@ fn what_is_no_log_is_refused_by_name() {
         (write("no.parquet", "nothing"), "no.parquet"),
     ];
     for (path, says) in cases {
-        let (code, out, said) = commission(&[&path]);
-        assert!(code == Some(2) && out.is_empty(), "{said}");
-        assert!(said.replace('\n', " ").contains(says), "{says}: {said}");
+        let (code, out, got) = commission(&[&path]);
+        assert!(code == Some(2) && out.is_empty(), "{got}");
+        assert!(got.replace('\n', " ").contains(says), "{says}: {got}");
     }
     // Every mapping is used or refused.
     let still = write("still.csv", &format!("{names}{still}"));
     for mapping in ["t_s=nope", "foo=t_s", "measured_x_m=measured_x_m*0"] {
-        let (code, out, said) = commission(&[&still, Path::new("--column"), Path::new(mapping)]);
-        assert!(code == Some(2) && out.is_empty(), "{said}");
+        let (code, out, got) = commission(&[&still, Path::new("--column"), Path::new(mapping)]);
+        assert!(code == Some(2) && out.is_empty(), "{got}");
         let name = mapping.split('=').next().unwrap();
-        assert!(said.contains("--column") && said.contains(name), "{said}");
+        assert!(got.contains("--column") && got.contains(name), "{got}");
     }
 }
 
@@ -232,19 +232,16 @@ fn what_python_writes_is_read_as_it_is_meant_or_refused() {
         ("complex.mat", Some("measured_x_m is of complex numbers")),
         ("late.csv", None),
     ] {
-        let (code, out, said) = commission(&[&folder.path().join(name)]);
+        let (code, out, got) = commission(&[&folder.path().join(name)]);
         match says {
-            Some(says) => assert!(
-                code == Some(2) && said.contains(says),
-                "{name}: {said}{out}"
-            ),
-            None => assert!(code == Some(0) && out.contains("mass_kg"), "{name}: {said}"),
+            Some(says) => assert!(code == Some(2) && got.contains(says), "{name}: {got}{out}"),
+            None => assert!(code == Some(0) && out.contains("mass_kg"), "{name}: {got}"),
         }
     }
     let scaled = [Path::new("--column"), Path::new("t_s=t_s*1e-9")];
     let ns = folder.path().join("ns.parquet");
-    let (code, out, said) = commission(&[&ns, scaled[0], scaled[1]]);
-    assert!(code == Some(0) && out.contains("1.2"), "{said}{out}");
+    let (code, out, got) = commission(&[&ns, scaled[0], scaled[1]]);
+    assert!(code == Some(0) && out.contains("1.2"), "{got}{out}");
 }
 
 /// Traces of both ends of a rotor, in a folder that goes with them, and their scene.
@@ -283,7 +280,7 @@ fn as_csv(trace: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     (names, lines.map(cells).collect())
 }
 
-/// Mass and inertias of a rotor in two planes, from two logs and from one; what is told wrong is contradicted, what costs most first.
+/// Mass and inertias of a rotor in two planes, from two logs and from one; what is configured wrong is contradicted, what costs most first.
 #[test]
 fn a_rotor_in_two_planes_is_found() {
     let (folder, [far, wheel], scene) = both_ends();
@@ -298,9 +295,9 @@ fn a_rotor_in_two_planes_is_found() {
         Path::new("--page"),
         &page,
     ];
-    let (code, said, err) = commission(&asked);
+    let (code, got, err) = commission(&asked);
     assert_eq!(code, Some(0), "{err}");
-    let parsed: Value = serde_json::from_str(&said).unwrap();
+    let parsed: Value = serde_json::from_str(&got).unwrap();
     for (name, is) in [
         ("mass_kg", 12.0),
         ("transverse_inertia_kg_m2", 0.25),
@@ -320,7 +317,7 @@ fn a_rotor_in_two_planes_is_found() {
     assert_eq!(
         parsed["contradictions"].as_array().unwrap().len(),
         0,
-        "{said}"
+        "{got}"
     );
     let html = fs::read_to_string(&page).unwrap();
     assert!(html.contains("<svg") && html.contains("transverse_inertia_kg_m2"));
@@ -329,15 +326,12 @@ fn a_rotor_in_two_planes_is_found() {
     let text = fs::read_to_string(&scene).unwrap();
     let wrong = folder.path().join("wrong.toml");
     fs::write(&wrong, text.replace("mass_kg = 12.0", "mass_kg = 18.0")).unwrap();
-    let (code, said, err) = commission(&[&far, &wheel, machine, &wrong, json]);
+    let (code, got, err) = commission(&[&far, &wheel, machine, &wrong, json]);
     assert_eq!(code, Some(0), "{err}");
-    let parsed: Value = serde_json::from_str(&said).unwrap();
+    let parsed: Value = serde_json::from_str(&got).unwrap();
     let contradicted = parsed["contradictions"].as_array().unwrap();
     let lost = |of: &Value| of["lost_share"].as_f64();
-    assert!(
-        contradicted.iter().any(|c| c["name"] == "mass_kg"),
-        "{said}"
-    );
+    assert!(contradicted.iter().any(|c| c["name"] == "mass_kg"), "{got}");
     assert!(
         contradicted[0]["name"]
             .as_str()
@@ -346,20 +340,20 @@ fn a_rotor_in_two_planes_is_found() {
     );
     assert!(lost(&contradicted[0]) >= lost(&contradicted[contradicted.len() - 1]));
 
-    let (code, out, said) = commission(&[&far, &wheel]);
+    let (code, out, got) = commission(&[&far, &wheel]);
     assert!(
-        code == Some(2) && out.is_empty() && said.contains("--machine"),
-        "{said}"
+        code == Some(2) && out.is_empty() && got.contains("--machine"),
+        "{got}"
     );
-    let (code, out, said) = commission(&[&wheel, &far, machine, &scene]);
+    let (code, out, got) = commission(&[&wheel, &far, machine, &scene]);
     assert!(
-        code == Some(2) && out.is_empty() && said.contains("order of the scene"),
-        "{said}"
+        code == Some(2) && out.is_empty() && got.contains("order of the scene"),
+        "{got}"
     );
-    let (code, out, said) = commission(&[&far, &wheel, machine, &scene_path("commissioning")]);
+    let (code, out, got) = commission(&[&far, &wheel, machine, &scene_path("commissioning")]);
     assert!(
-        code == Some(2) && out.is_empty() && said.contains("two planes"),
-        "{said}"
+        code == Some(2) && out.is_empty() && got.contains("two planes"),
+        "{got}"
     );
 }
 
@@ -367,8 +361,8 @@ fn a_rotor_in_two_planes_is_found() {
 fn one_log_of_two_planes_tells_the_same() {
     let (folder, [far, wheel], scene) = both_ends();
     let (machine, json) = (Path::new("--machine"), Path::new("--json"));
-    let (_, said, _) = commission(&[&far, &wheel, machine, &scene, json]);
-    let parsed: Value = serde_json::from_str(&said).unwrap();
+    let (_, got, _) = commission(&[&far, &wheel, machine, &scene, json]);
+    let parsed: Value = serde_json::from_str(&got).unwrap();
     let (names, first) = as_csv(&far);
     let (_, second) = as_csv(&wheel);
     let at = |name: &str| names.iter().position(|n| n == name).unwrap();
@@ -420,9 +414,9 @@ fn a_record_says_what_it_can_and_what_not() {
     let scene = scene_path("overload_then_release");
     assert!(run_scene(&scene, &out, &["--no-trace"]).status.success());
     let record = out.join("record_supervisor.bin");
-    let (code, said, err) = commission(&[&record, Path::new("--json")]);
+    let (code, got, err) = commission(&[&record, Path::new("--json")]);
     assert_eq!(code, Some(0), "{err}");
-    let parsed: Value = serde_json::from_str(&said).unwrap();
+    let parsed: Value = serde_json::from_str(&got).unwrap();
     // As the scene has it.
     let [value, low, high] = found(&parsed, "sensor_noise_m");
     assert!((low..=high).contains(&1e-6), "{value}");
@@ -433,16 +427,16 @@ fn a_record_says_what_it_can_and_what_not() {
         ("spin_sense", "turns less"),
     ] {
         let one = missing.iter().find(|m| m["name"] == name).unwrap();
-        assert!(one["reason"].as_str().unwrap().contains(why), "{said}");
+        assert!(one["reason"].as_str().unwrap().contains(why), "{got}");
     }
     for more in [
         [Path::new("--machine"), scene.as_path()],
         [Path::new("--walk"), scene.as_path()],
     ] {
-        let (code, out, said) = commission(&[&record, more[0], more[1]]);
+        let (code, out, got) = commission(&[&record, more[0], more[1]]);
         assert!(
-            code == Some(2) && out.is_empty() && said.contains("flight record"),
-            "{said}"
+            code == Some(2) && out.is_empty() && got.contains("flight record"),
+            "{got}"
         );
     }
 }

@@ -152,10 +152,10 @@ fn every_command_works_or_is_known() {
             .current_dir(folder.path())
             .output()
             .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
+        let shown = String::from_utf8_lossy(&output.stderr);
         assert!(
             output.status.success() && !output.stdout.is_empty(),
-            "{args}: {said}"
+            "{args}: {shown}"
         );
     };
     run("run firmware-host/scenes/overload_then_release.toml", &[]);

@@ -22,12 +22,12 @@ fn a_trace_is_the_same_in_every_format() {
     let trace = folder.path().join("trace_supervisor.parquet");
     for format in ["csv", "mcap"] {
         let output = export(&trace, &["--to", format]);
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{said}");
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{text}");
     }
     let digest = firmware_bench::sweep::plan::digest(&scene).unwrap();
     let name = folder.path().to_str().unwrap();
     let arguments = [name, "trace_supervisor", digest.as_str()];
-    let said = checked(&python, "tests/python/exports.py", &arguments);
-    assert!(said.contains("rows the same three times"), "{said}");
+    let text = checked(&python, "tests/python/exports.py", &arguments);
+    assert!(text.contains("rows the same three times"), "{text}");
 }

@@ -21,8 +21,8 @@ fn fmu(scene: &Path, out: &Path, more: &[&str]) -> Output {
 
 fn units(scene: &Path, out: &Path, version: &str) {
     let output = fmu(scene, out, &["--fmi", version]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    let shown = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{shown}");
 }
 
 /// Runs a Python program that fails where something does not hold.
@@ -33,8 +33,8 @@ pub(crate) fn checked(python: &Path, program: &str, arguments: &[&str]) -> Strin
         .args(arguments)
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}\n{said}");
+    let shown = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}\n{shown}");
     String::from_utf8(output.stdout).unwrap()
 }
 
@@ -75,8 +75,8 @@ fn units_are_valid_and_their_closed_loop_is_the_native_run() {
                 let traces: Vec<String> = planes.iter().map(trace).collect();
                 let mut arguments = vec!["equal", closed_loop, policy];
                 arguments.extend(traces.iter().map(String::as_str));
-                let said = checked(&python, CHECKS, &arguments);
-                assert!(said.contains("columns the same"), "{said}");
+                let shown = checked(&python, CHECKS, &arguments);
+                assert!(shown.contains("columns the same"), "{shown}");
             }
         }
     }
@@ -105,8 +105,8 @@ fn plant_and_supervisor_close_with_a_controller_in_python() {
         fs::write(&csv, positions).unwrap();
         let trace = folder.path().join(format!("trace_{policy}.parquet"));
         let arguments = ["positions", text(&csv), text(&trace)];
-        let said = checked(&python, CHECKS, &arguments);
-        assert!(said.contains("2000 positions the same"), "{said}");
+        let shown = checked(&python, CHECKS, &arguments);
+        assert!(shown.contains("2000 positions the same"), "{shown}");
     }
 }
 
@@ -117,8 +117,8 @@ fn mistakes_end_in_errors_with_their_text_in_the_log() {
     units(&scene_path("impact_at_40_hz"), folder.path(), "3.0");
     let plant = folder.path().join("plant.fmu");
     checked(&python, CHECKS, &["errors", text(&plant)]);
-    let said = checked(&python, CHECKS, &["early", text(&plant)]);
-    assert!(said.contains("early returns"), "{said}");
+    let shown = checked(&python, CHECKS, &["early", text(&plant)]);
+    assert!(shown.contains("early returns"), "{shown}");
 }
 
 /// Parameters that are set in a unit are those of `run --set`.
@@ -171,8 +171,8 @@ fn archives_are_the_same_bytes_and_whole_or_not_there() {
     let nowhere = folder.path().join("c");
     let output = fmu(&wrong, &nowhere, &[]);
     assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("mass_kg") && !nowhere.exists(), "{said}");
+    let shown = String::from_utf8_lossy(&output.stderr);
+    assert!(shown.contains("mass_kg") && !nowhere.exists(), "{shown}");
     let output = fmu(&scene, &nowhere, &["--library", "nowhere.so"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(!nowhere.exists());

@@ -42,7 +42,7 @@ fn a_rotor_in_two_bearings_is_levitated() {
         let written = init(&file, &format!("{ROTOR} {inertias}"));
         let error = String::from_utf8_lossy(&written.stderr).into_owned();
         assert!(written.status.success(), "{name}: {error}");
-        // What a shaft bends by the supervisor is told of, once.
+        // What a shaft bends by the supervisor has configured, once.
         let expected = usize::from(name == "shaft");
         assert_eq!(error.lines().count(), expected, "{name}: {error}");
         let judged = host()

@@ -57,8 +57,8 @@ fn bending_hz(scene: &Path) -> Vec<f64> {
         .args(["modes", "--json", "--points", "2"])
         .arg(scene)
         .output();
-    let told: Value = serde_json::from_slice(&output.unwrap().stdout).unwrap();
-    let modes = told["modes"].as_array().unwrap().iter();
+    let value: Value = serde_json::from_slice(&output.unwrap().stdout).unwrap();
+    let modes = value["modes"].as_array().unwrap().iter();
     let still = modes.filter(|mode| mode["spin_rad_s"] == 0.0 && mode["whirl"] == "forward");
     let all = still.filter_map(|mode| mode["frequency_hz"].as_f64());
     all.filter(|hz| *hz > 10.0).collect()

@@ -320,7 +320,7 @@ fn what_nobody_else_names_is_private() {
         .flat_map(|folder| files_below(&root.join(folder)))
         .map(|path| (path.clone(), std::fs::read_to_string(path).unwrap()))
         .collect();
-    let said: Vec<BTreeSet<String>> = files.iter().map(|(_, text)| words(text)).collect();
+    let named: Vec<BTreeSet<String>> = files.iter().map(|(_, text)| words(text)).collect();
     let mut unused = Vec::new();
     for krate in [
         "supervisor/src",
@@ -329,7 +329,7 @@ fn what_nobody_else_names_is_private() {
         "firmware-host/studies/src",
     ] {
         let own = root.join(krate);
-        let outside: BTreeSet<&str> = (files.iter().zip(&said))
+        let outside: BTreeSet<&str> = (files.iter().zip(&named))
             .filter(|((path, _), _)| !path.starts_with(&own))
             .flat_map(|(_, words)| words.iter().map(String::as_str))
             .collect();

@@ -17,8 +17,8 @@ pub(crate) fn metadata() -> Value {
     let host = String::from_utf8(host.stdout).unwrap();
     cargo.args(["--filter-platform", host.trim()]);
     let output = cargo.current_dir(root()).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    let shown = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{shown}");
     serde_json::from_slice(&output.stdout).unwrap()
 }
 

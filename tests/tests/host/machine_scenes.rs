@@ -9,7 +9,7 @@ mod modes;
 mod refusals;
 mod seals;
 
-use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
+use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::{Recorder, Trace};
 use firmware_bench::scene::Scene;
@@ -113,7 +113,7 @@ fn planes(scene: &Scene, kind: PolicyKind) -> Vec<(Figures, Trace)> {
         planes: traces.iter_mut().map(|t| t as &mut dyn Recorder).collect(),
         axis: None,
     };
-    let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
+    let ended = record(scene, kind, recorders, Accuracy::default(), &mut |_| {}).unwrap();
     ended
         .into_iter()
         .map(|(figures, _)| figures)

@@ -5,7 +5,7 @@ mod mistakes;
 
 use firmware_bench::device::external::{Caller, Make, Question, Setup, Step};
 use firmware_bench::device::levitation::{Levitation, LevitationParams};
-use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
+use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
 use firmware_bench::run::trace::{Recorder, Trace};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -166,13 +166,13 @@ fn a_controller_of_the_callers_stands_in_the_place_of_gains() {
             assert!(own == figures && own_rows == rows, "{kind:?} {table}");
         }
     }
-    let said = |table: &str| trace(&of_caller(table), BOTH[0]).unwrap_err().to_string();
+    let shown = |table: &str| trace(&of_caller(table), BOTH[0]).unwrap_err().to_string();
     assert_eq!(
-        said("[controller]\nparameters = [1.0]\n"),
+        shown("[controller]\nparameters = [1.0]\n"),
         "policy levitation: controller gains at 0 s: answered 3 forces, expected 2"
     );
     assert_eq!(
-        said("[controller]\nparameters = [13.0]\n"),
+        shown("[controller]\nparameters = [13.0]\n"),
         "policy levitation: controller: gains has no luck"
     );
 }
@@ -268,8 +268,8 @@ fn the_examples_hold_their_rotor() {
         let ran = |threads: &str| {
             let out = folder.path().join(format!("{name}_{threads}"));
             let output = run_scene(&path, &out, &["--json", "--threads", threads]);
-            let said = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{name}: {said}");
+            let shown = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{name}: {shown}");
             let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
             for policy in ["levitation", "supervisor"] {
                 let outcome = &json["policies"][policy]["outcome"];
@@ -321,7 +321,7 @@ fn traces(folder: &Path, text: &str, kind: PolicyKind) -> Vec<Trace> {
         planes: traces.iter_mut().map(|t| t as &mut dyn Recorder).collect(),
         axis: None,
     };
-    record(&scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
+    record(&scene, kind, recorders, Accuracy::default(), &mut |_| {}).unwrap();
     traces
 }
 
@@ -374,7 +374,7 @@ fn sections_hold_a_whole_rotor_as_gains_of_its_planes_do() {
     refused(&both, "plane[1].biquads: does not go with [state_space]");
 }
 
-/// What the C controller is told, checked by itself.
+/// What the C controller is given, checked by itself.
 const ASKS_IN_C: &str = "#include \"amb_controller.h\"
 AMB_CONTROLLER_DEFINE_ABI
 static uint32_t n;

@@ -98,17 +98,17 @@ fn there_is_one_version() {
         }
     }
     // Where people read it.
-    let mut said = 0;
+    let mut named = 0;
     for page in files(".md") {
         let text = read(&page);
         for package in &ours {
             for version in versions_behind(&text, package["name"].as_str().unwrap()) {
                 assert_eq!(version, VERSION, "{}", page.display());
-                said += 1;
+                named += 1;
             }
         }
     }
-    assert!(said >= 3, "{said} pages name a package's file");
+    assert!(named >= 3, "{named} pages name a package's file");
     let (minor, _) = VERSION.rsplit_once('.').unwrap();
     let cmake = format!("find_package(amb_supervisor {minor} REQUIRED)");
     assert!(read("docs/src/supervisor/c.md").contains(&cmake), "{cmake}");
@@ -150,8 +150,8 @@ fn every_list_of_changes_has_this_version() {
 /// Runs a program that has to be there, and has to succeed.
 fn succeeds(command: &mut Command) -> String {
     let output = command.output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?}: {said}");
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {text}");
     String::from_utf8(output.stdout).unwrap()
 }
 

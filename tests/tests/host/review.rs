@@ -6,8 +6,8 @@ pub(crate) mod logs;
 
 use firmware_bench::record::file::{PlaneRecord, RecordFile};
 use firmware_bench::record::identify::Estimate;
+use firmware_bench::record::narrative::Event;
 use firmware_bench::record::replay::replay;
-use firmware_bench::record::story::Event;
 use firmware_bench::run::controller as bench;
 use serde_json::Value;
 use std::fs;
@@ -56,12 +56,12 @@ fn what_was_written_is_read_and_replays() {
         let replay = event.replay.unwrap();
         assert_eq!(replay.differing, 0);
         assert!(replay.ticks > planes * 48, "{replay:?}");
-        let told = event.told().unwrap();
+        let narrative = event.narrative().unwrap();
         assert_eq!(
-            (told.outcome, told.touches, told.landings),
+            (narrative.outcome, narrative.touches, narrative.landings),
             ("levitated", Some(1), 1)
         );
-        // A tick that was told something else is found.
+        // A tick with other inputs is found.
         let mut wrong = file.clone();
         let entry = wrong.records[0].entries.get_mut(&40).unwrap();
         entry.position[0] ^= 1 << 16;
@@ -81,17 +81,17 @@ fn replay_of(records: &[&PlaneRecord]) -> (usize, Option<u32>) {
 /// What is found out of whatever a file has is a number in its interval, and a contact ends after it began.
 fn finds_sound_figures(file: &RecordFile, name: &str) {
     for found in file.events().iter().filter_map(Event::findings) {
-        let told = &found.identified;
+        let identified = &found.identified;
         let all = [
-            told.friction_coefficient,
-            told.restitution,
-            told.load_x_n,
-            told.load_y_n,
-            told.eccentricity_m,
-            told.clearance_m,
+            identified.friction_coefficient,
+            identified.restitution,
+            identified.load_x_n,
+            identified.load_y_n,
+            identified.eccentricity_m,
+            identified.clearance_m,
         ];
         for Estimate { value, low, high } in all.into_iter().flatten() {
-            assert!(low <= value && value <= high, "{name}: {told:?}");
+            assert!(low <= value && value <= high, "{name}: {identified:?}");
         }
         for contact in &found.contacts {
             assert!(contact.from_tick <= contact.to_tick, "{name}: {contact:?}");
@@ -156,17 +156,17 @@ fn a_bearing_that_is_switched_off_is_no_recovery() {
         plane.tick(&at);
     }
     let file = RecordFile::of(&written(&plane.record().unwrap()));
-    let told = file.events()[0].told().unwrap();
-    assert_eq!(told.outcome, "bearing off");
+    let narrative = file.events()[0].narrative().unwrap();
+    assert_eq!(narrative.outcome, "bearing off");
     assert!(
-        told.paragraph(0.0).contains("Look at the machine"),
+        narrative.paragraph(0.0).contains("Look at the machine"),
         "{}",
-        told.paragraph(0.0)
+        narrative.paragraph(0.0)
     );
     // One plane of two says nothing of the machine.
     let [.., rotor] = landings();
     let half = RecordFile::of(&rotor[..rotor.len() / 2]);
-    assert!(half.is_intact() && half.events()[0].told().is_none());
+    assert!(half.is_intact() && half.events()[0].narrative().is_none());
 }
 
 /// A change of the configuration on the way ends the replay before it: the record has the one of the beginning.
@@ -227,20 +227,20 @@ fn a_person_and_a_program_read_what_happened() {
         assert!(text.contains(word), "{word} is not in\n{text}");
     }
     let json = review(&file, &["--json"]);
-    let told: Value = serde_json::from_slice(&json.stdout).unwrap();
+    let value: Value = serde_json::from_slice(&json.stdout).unwrap();
     assert_eq!(
-        (&told["intact"], &told["format"]),
+        (&value["intact"], &value["format"]),
         (&true.into(), &3.into())
     );
-    assert_eq!(told["summary"]["outcome"], "levitated");
-    assert_eq!(told["summary"]["coast_down"], false);
-    assert_eq!(told["replay"]["differing"], 0);
-    assert!(told["replay"]["ticks"].as_u64() > Some(300));
+    assert_eq!(value["summary"]["outcome"], "levitated");
+    assert_eq!(value["summary"]["coast_down"], false);
+    assert_eq!(value["replay"]["differing"], 0);
+    assert!(value["replay"]["ticks"].as_u64() > Some(300));
     let text = fs::read(out.join("verdict.json")).unwrap();
     let verdict: Value = serde_json::from_slice(&text).unwrap();
     let supervision = &verdict["policies"]["supervisor"]["supervision"];
-    assert_eq!(told["summary"]["landings"], supervision["landings"]);
-    let ticks = told["planes"][0]["ticks"].as_array().unwrap();
+    assert_eq!(value["summary"]["landings"], supervision["landings"]);
+    let ticks = value["planes"][0]["ticks"].as_array().unwrap();
     let csv = String::from_utf8(review(&file, &["--csv"]).stdout).unwrap();
     assert_eq!(csv.lines().count(), 1 + ticks.len());
 
@@ -255,9 +255,9 @@ fn a_person_and_a_program_read_what_happened() {
     assert!(String::from_utf8_lossy(&shown.stdout).contains("ENGAGED"));
     let json = review(&file, &["--json"]);
     assert_eq!(json.status.code(), Some(2));
-    let told: Value = serde_json::from_slice(&json.stdout).unwrap();
-    assert_eq!(told["intact"], false);
-    assert!(told["error"].as_str().unwrap().contains("bytes"));
+    let value: Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(value["intact"], false);
+    assert!(value["error"].as_str().unwrap().contains("bytes"));
 }
 
 /// A stamp comes back.

@@ -39,8 +39,8 @@ fn an_event_is_found_out_and_simulated() {
         assert!(text.contains(word), "{word} is not in\n{text}");
     }
     let json = review(&file, &["--json", "--scene", scene, "--set", set]);
-    let told: Value = serde_json::from_slice(&json.stdout).unwrap();
-    let identified = &told["identified"];
+    let value: Value = serde_json::from_slice(&json.stdout).unwrap();
+    let identified = &value["identified"];
     for (name, truth) in [("load_x_n", 1300.0), ("load_y_n", 750.0)] {
         let [value, low, high] = ["value", "low", "high"].map(|key| number(&identified[name][key]));
         assert!(low <= truth && truth <= high, "{name}: {identified}");
@@ -52,17 +52,17 @@ fn an_event_is_found_out_and_simulated() {
     // Two single impacts are too few.
     assert_eq!(identified["restitution"], Value::Null);
     assert_eq!(identified["friction_coefficient"], Value::Null);
-    let contacts = told["contacts"].as_array().unwrap();
+    let contacts = value["contacts"].as_array().unwrap();
     assert_eq!(contacts.len(), 3, "{contacts:?}");
     let over_mass = &contacts[0]["impulse"]["over_mass_m_s"];
     let friction = number(&over_mass[1]) / number(&over_mass[0]);
     // The spin is counter-clockwise: friction drives the rotor clockwise.
     assert!((friction + 0.15).abs() < 0.01, "{friction}");
-    assert_eq!(told["configured_otherwise"], serde_json::json!([]));
-    let policies = &told["simulated"]["policies"];
+    assert_eq!(value["configured_otherwise"], serde_json::json!([]));
+    let policies = &value["simulated"]["policies"];
     let again = &policies["supervisor"];
     assert_eq!(again["outcome"], "recovered");
-    let severity = number(&told["summary"]["severity"]);
+    let severity = number(&value["summary"]["severity"]);
     let simulated = number(&again["supervision"]["severity_index"]);
     assert!(
         (simulated / severity - 1.0).abs() < 0.15,

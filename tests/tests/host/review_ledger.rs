@@ -34,7 +34,7 @@ impl Files {
     }
 
     /// The retainer bearings that `--json` has, and the text without.
-    fn told(&self, more: &[&str]) -> (Vec<Value>, String) {
+    fn reviewed(&self, more: &[&str]) -> (Vec<Value>, String) {
         let json = self.review(&[&["--json"], more].concat());
         assert!(json.status.success(), "{json:?}");
         let json: Value = serde_json::from_slice(&json.stdout).unwrap();
@@ -72,7 +72,7 @@ fn what_is_left_is_what_the_rule_says() {
     assert!(severity > 0.0);
 
     // Without a ledger: what the supervisor has counted, against the limit of its configuration.
-    let (bearings, text) = files.told(&[]);
+    let (bearings, text) = files.reviewed(&[]);
     let [bearing] = &bearings[..] else {
         panic!("{bearings:?}")
     };
@@ -111,7 +111,7 @@ fn what_is_left_is_what_the_rule_says() {
     before.begin_run();
     landed(&files, &mut before);
     files.put("ledger.bin", &before.to_bytes());
-    let (bearings, text) = files.told(&["--ledger", "ledger.bin"]);
+    let (bearings, text) = files.reviewed(&["--ledger", "ledger.bin"]);
     let bearing = &bearings[0];
     assert_eq!(
         (&bearing["counted_by"], &bearing["bearing"]),
@@ -139,7 +139,7 @@ fn what_is_left_is_what_the_rule_says() {
     assert!(text.contains("this event is the last one in it"), "{text}");
 
     // What the user allows counts before all; and where it is used up the verdict says so.
-    let (bearings, text) = files.told(&["--ledger", "ledger.bin", "--allowance", "20"]);
+    let (bearings, text) = files.reviewed(&["--ledger", "ledger.bin", "--allowance", "20"]);
     let left = ((11.0 - severity) / 6.5).floor();
     assert_eq!(number(&bearings[0]["left_like_the_worst"]), left);
     assert!(
@@ -147,7 +147,7 @@ fn what_is_left_is_what_the_rule_says() {
         "{text}"
     );
     assert!(!text.contains("Nothing speaks against"), "{text}");
-    let (bearings, text) = files.told(&["--ledger", "ledger.bin", "--allowance", "3"]);
+    let (bearings, text) = files.reviewed(&["--ledger", "ledger.bin", "--allowance", "3"]);
     assert_eq!(number(&bearings[0]["left_like_this"]), 0.0);
     assert!(
         text.contains("inspect it before the machine runs on"),
@@ -157,14 +157,14 @@ fn what_is_left_is_what_the_rule_says() {
     // One of another event, and one without any.
     before.closed_at = 1;
     files.put("ledger.bin", &before.to_bytes());
-    let (bearings, text) = files.told(&["--ledger", "ledger.bin"]);
+    let (bearings, text) = files.reviewed(&["--ledger", "ledger.bin"]);
     assert_eq!(bearings[0]["has_this_event"], false);
     assert!(
         text.contains("its last event is another one than this"),
         "{text}"
     );
     files.put("ledger.bin", &Ledger::new(8, 20.0).to_bytes());
-    let (bearings, text) = files.told(&["--ledger", "ledger.bin"]);
+    let (bearings, text) = files.reviewed(&["--ledger", "ledger.bin"]);
     assert_eq!(
         (&bearings[0]["landings"], &bearings[0]["has_this_event"]),
         (&0.into(), &false.into())
@@ -190,7 +190,7 @@ fn a_rotor_has_two_ledgers() {
     }
     files.put("landing.bin", &records.each_ref().map(written).concat());
     files.put("ledger.bin", ledgers.map(|l| l.to_bytes()).as_flattened());
-    let (bearings, text) = files.told(&["--ledger", "ledger.bin"]);
+    let (bearings, text) = files.reviewed(&["--ledger", "ledger.bin"]);
     let landings: Vec<_> = bearings
         .iter()
         .map(|b| (&b["bearing"], &b["landings"]))
@@ -202,9 +202,9 @@ fn a_rotor_has_two_ledgers() {
     );
     files.put("ledger.bin", &ledgers[0].to_bytes());
     let refused = files.review(&["--ledger", "ledger.bin"]);
-    let said = String::from_utf8_lossy(&refused.stderr);
-    assert_eq!(refused.status.code(), Some(2), "{said}");
-    assert!(said.contains("it has 48 bytes"), "{said}");
+    let shown = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{shown}");
+    assert!(shown.contains("it has 48 bytes"), "{shown}");
 }
 
 /// Requirement: SR-39
@@ -227,18 +227,18 @@ fn a_ledger_that_is_none_gives_an_error_and_no_figure() {
         for json in [&[][..], &["--json"]] {
             let output = files.review(&[more, json].concat());
             // Lines are wrapped to the terminal's width.
-            let said = String::from_utf8_lossy(&output.stderr);
-            let said = said
+            let shown = String::from_utf8_lossy(&output.stderr);
+            let shown = shown
                 .replace('│', " ")
                 .split_whitespace()
                 .collect::<Vec<_>>()
                 .join(" ");
-            assert_eq!(output.status.code(), Some(2), "{said}");
-            assert!(said.contains(wanted), "{wanted}: {said}");
-            let told = String::from_utf8_lossy(&output.stdout);
+            assert_eq!(output.status.code(), Some(2), "{shown}");
+            assert!(shown.contains(wanted), "{wanted}: {shown}");
+            let stdout = String::from_utf8_lossy(&output.stdout);
             assert!(
-                !told.contains("Room for") && !told.contains("left_like"),
-                "{told}"
+                !stdout.contains("Room for") && !stdout.contains("left_like"),
+                "{stdout}"
             );
         }
     };
@@ -259,20 +259,20 @@ fn a_ledger_that_is_none_gives_an_error_and_no_figure() {
 fn the_allowance_is_the_first_that_is_given() {
     let files = Files::new();
     let text = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let told = text.clone() + "\n[retainer]\nseverity_allowed = 3.0\n";
-    files.put("told.toml", told.as_bytes());
-    files.put("untold.toml", text.as_bytes());
-    let run = ["run", "told.toml", "--no-trace", "--quiet", "--out", "run"];
+    let limited = text.clone() + "\n[retainer]\nseverity_allowed = 3.0\n";
+    files.put("with.toml", limited.as_bytes());
+    files.put("without.toml", text.as_bytes());
+    let run = ["run", "with.toml", "--no-trace", "--quiet", "--out", "run"];
     let ran = host().current_dir(files.folder.path()).args(run).output();
     assert!(ran.unwrap().status.success());
     let run = files.folder.path().join("run/record_supervisor.bin");
     std::fs::copy(run, files.folder.path().join("landing.bin")).unwrap();
     files.put("ledger.bin", &Ledger::new(7, 11.0).to_bytes());
-    let allowed = |more: &[&str]| number(&files.told(more).0[0]["severity_allowed"]);
-    let (ledger, scene) = (["--ledger", "ledger.bin"], ["--scene", "told.toml"]);
+    let allowed = |more: &[&str]| number(&files.reviewed(more).0[0]["severity_allowed"]);
+    let (ledger, scene) = (["--ledger", "ledger.bin"], ["--scene", "with.toml"]);
     assert_eq!(allowed(&[]), 20.0);
     assert_eq!(allowed(&ledger), 11.0);
-    assert_eq!(allowed(&["--scene", "untold.toml"]), 20.0);
+    assert_eq!(allowed(&["--scene", "without.toml"]), 20.0);
     assert_eq!(allowed(&scene), 3.0);
     let both = [&ledger[..], &scene].concat();
     assert_eq!(allowed(&both), 3.0);
@@ -280,6 +280,6 @@ fn the_allowance_is_the_first_that_is_given() {
     assert_eq!(allowed(&set), 4.0);
     let all = [&set[..], &["--allowance", "5"]].concat();
     assert_eq!(allowed(&all), 5.0);
-    let (_, text) = files.told(&both);
+    let (_, text) = files.reviewed(&both);
     assert!(text.contains("(severity 0.00 of 3,"), "{text}");
 }

@@ -97,8 +97,8 @@ fn neither_threads_nor_parts_change_a_byte() {
 
     // Parts in folders of their own, put together.
     for part in ["1/3", "2/3", "3/3"] {
-        let said = succeeds(&sweep(&file, &out(&part[..1]), &["--shard", part]));
-        assert!(said.contains("runs of this part are done"), "{said}");
+        let shown = succeeds(&sweep(&file, &out(&part[..1]), &["--shard", part]));
+        assert!(shown.contains("runs of this part are done"), "{shown}");
     }
     let missing = sweep(
         &file,

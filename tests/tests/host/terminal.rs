@@ -53,7 +53,7 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
     .to_vec()
 }
 
-fn said(args: &[String]) -> String {
+fn stdout(args: &[String]) -> String {
     let output = host().args(args).output().unwrap();
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{args:?}: {error}");
@@ -106,7 +106,7 @@ const COLOUR_VARIABLES: [&str; 4] = ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "
 fn tables_fit_eighty_columns() {
     let folder = TempDir::new().unwrap();
     for args in commands(folder.path()) {
-        let text = said(&args);
+        let text = stdout(&args);
         assert_fits(&text, 80);
         assert!(args[0] == "advise" || tables(&text) > 0, "{args:?}: {text}");
     }
@@ -145,7 +145,7 @@ fn a_narrow_terminal_loses_nothing() {
     let scene = path(&scene_path("impact_at_40_hz"));
     let out: PathBuf = folder.path().join("run");
     let run = arguments(&["run", &scene, "--no-trace", "--out", &path(&out)]);
-    let whole = said(&run);
+    let whole = stdout(&run);
     let Some(narrow) = on_a_terminal(&run, 44) else {
         return;
     };

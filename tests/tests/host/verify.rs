@@ -1,6 +1,6 @@
 //! `run --verify`: a run's own estimate of its global error, and hints for people on the way.
 
-use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
+use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::recording::{TraceFiles, recorded};
 use firmware_bench::run::trace::{Recorder, Trace};
@@ -115,16 +115,16 @@ fn the_estimate_sees_what_is_held_over_parts() {
     let error_and_estimate = |edits: &[(&str, &str)], kind| {
         let scene = Scene::load(&edited(folder.path(), "overload_then_release", edits)).unwrap();
         let (_, trace, v) = verified(&scene, kind);
-        let rigour = Rigour {
+        let accuracy = Accuracy {
             parts: 64,
-            ..Rigour::default()
+            ..Accuracy::default()
         };
         let mut fine = Trace::default();
         let recorders = Recorders {
             planes: vec![&mut fine],
             axis: None,
         };
-        record(&scene, kind, recorders, rigour, &mut |_| {}).unwrap();
+        record(&scene, kind, recorders, accuracy, &mut |_| {}).unwrap();
         let apart_m = (trace.rows.iter().zip(&fine.rows))
             .map(|(a, b)| (a.plant.position_m - b.plant.position_m).norm())
             .fold(0.0, f64::max);
@@ -299,7 +299,7 @@ fn a_contradicted_outcome_is_said_and_ends_with_exit_code_1() {
     assert!(report.contains("OTHER than the run"));
 }
 
-/// What `auto` came to is in the verdict.
+/// What `auto` chose is in the verdict.
 #[test]
 fn the_method_that_ran_is_named() {
     let folder = TempDir::new().unwrap();
@@ -348,7 +348,7 @@ fn control_rates_beyond_the_supervisors_are_warned_of() {
     }
 }
 
-/// A levitation loop that is unstable or badly damped is no baseline, and the reader is told; one that swings out, or damps
+/// A levitation loop that is unstable or badly damped is no baseline, and the reader is warned; one that swings out, or damps
 /// well, shows who is right.
 #[test]
 fn a_levitation_loop_that_hardly_holds_is_warned_of() {
@@ -385,8 +385,8 @@ fn a_levitation_loop_that_hardly_holds_is_warned_of() {
                 _ => vec![word, &path],
             };
             let result = system_tests::host().args(args).output().unwrap();
-            let said = String::from_utf8_lossy(&result.stderr);
-            assert!(said.contains(words.unwrap()), "{word}: {said}");
+            let shown = String::from_utf8_lossy(&result.stderr);
+            assert!(shown.contains(words.unwrap()), "{word}: {shown}");
         }
     }
 }

@@ -35,7 +35,7 @@ fn compare(event: Event, scene: &Scene, trace: &Trace, last: u32, found: &Findin
         contacts: seen.contacts,
         ..Counts::default()
     };
-    let told = &found.identified;
+    let id = &found.identified;
     let near = |share: &mut Share, estimate: Option<Estimate>, truth: f64, off: f64| {
         if let Some(estimate) = estimate {
             share.count((estimate.value - truth).abs() <= off);
@@ -46,36 +46,31 @@ fn compare(event: Event, scene: &Scene, trace: &Trace, last: u32, found: &Findin
         plant.friction.sliding.coefficient(0.0),
         plant.contact.clearance_m,
     );
-    near(
-        &mut counts.friction,
-        told.friction_coefficient,
-        mu,
-        0.1 * mu,
-    );
+    near(&mut counts.friction, id.friction_coefficient, mu, 0.1 * mu);
     near(
         &mut counts.restitution,
-        told.restitution,
+        id.restitution,
         restitution(&plant),
         0.1,
     );
     near(
         &mut counts.clearance,
-        told.clearance_m,
+        id.clearance_m,
         clearance_m,
         0.05 * clearance_m,
     );
     let eccentricity_m = plant.rotor.eccentricity_m;
     near(
         &mut counts.eccentricity,
-        told.eccentricity_m,
+        id.eccentricity_m,
         eccentricity_m,
         0.05 * clearance_m,
     );
     // What lasts as long as a flight before the first contact; a push is over by then.
     let cap_n = plant.magnet.map_or(0.0, |magnet| magnet.force_max_n);
     if let (Event::Overload, [load]) = (event, &scene.disturbances[..]) {
-        near(&mut counts.load, told.load_x_n, load.force_n.x, 0.2 * cap_n);
-        near(&mut counts.load, told.load_y_n, load.force_n.y, 0.2 * cap_n);
+        near(&mut counts.load, id.load_x_n, load.force_n.x, 0.2 * cap_n);
+        near(&mut counts.load, id.load_y_n, load.force_n.y, 0.2 * cap_n);
     }
     counts
 }

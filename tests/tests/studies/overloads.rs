@@ -118,7 +118,7 @@ fn promises_of_a_quick_run() {
         assert!(headline.contains(&name), "{name} in {headline}");
     }
 
-    // The scene of one's own: told, and compared, and no promise is about it.
+    // The scene of one's own: reported, and compared, and no promise is about it.
     let harms = root["against_levitation"].as_array().unwrap();
     let own = harms.last().unwrap();
     assert!(

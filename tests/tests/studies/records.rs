@@ -1,7 +1,7 @@
 //! Records of random events, in closed loops with faults: written down, read and replayed.
 
 use firmware_bench::record::file::RecordFile;
-use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
+use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
 use firmware_bench::run::trace::{Recorder, TraceRow};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::run_all;
@@ -10,7 +10,7 @@ use firmware_studies::paired::machines::MachineClass;
 use firmware_studies::paired::{harm, whole_rotors};
 use supervisor::Mode;
 
-/// What came of a run with a record.
+/// Outcome of a run with a record.
 struct Ran {
     name: String,
     record: Option<Vec<u8>>,
@@ -18,9 +18,9 @@ struct Ran {
     recovered: Option<bool>,
 }
 
-/// All ticks from the state on are replayed, to the last bit; and how many of the events that are told to have ended in levitation did.
+/// All ticks from the state on are replayed, to the last bit; and how many of the events that are reported to have ended in levitation did.
 fn check(ran: &[Ran], planes: usize) -> (usize, usize, usize) {
-    let (mut records, mut told, mut right) = (0, 0, 0);
+    let (mut records, mut levitated, mut right) = (0, 0, 0);
     for Ran {
         name,
         record,
@@ -44,12 +44,12 @@ fn check(ran: &[Ran], planes: usize) -> (usize, usize, usize) {
             let summary = summary.unwrap_or_else(|| panic!("{name}: no summary"));
             // What is handed back is levitation's to bring in or not.
             if summary.mode == Mode::Levitated as u32 {
-                told += 1;
+                levitated += 1;
                 right += usize::from(*recovered);
             }
         }
     }
-    (records, told, right)
+    (records, levitated, right)
 }
 
 /// Hundreds of one plane: every kind of event with every kind of sensors, at the rates that machines have.
@@ -74,12 +74,12 @@ fn records_of_closed_loops_replay_to_the_bit() {
             recovered: recovered.filter(|_| only),
         }
     });
-    let (records, told, right) = check(&ran, 1);
+    let (records, levitated, right) = check(&ran, 1);
     assert!(records >= 250, "{records} records of {}", ran.len());
-    // Sensors that lie, in pairs too, are among them: of four times as many nine of some 790 are told to levitate and do not come in.
+    // Sensors that lie, in pairs too, are among them: of four times as many nine of some 790 are reported to levitate and do not come in.
     assert!(
-        told >= 125 && 1000 * right >= 985 * told,
-        "{right} of {told} outcomes are those of the plant"
+        levitated >= 125 && 1000 * right >= 985 * levitated,
+        "{right} of {levitated} outcomes are those of the plant"
     );
 }
 
@@ -115,12 +115,12 @@ fn records_of_rotors_replay_to_the_bit() {
             planes: vec![&mut first, &mut second],
             axis: None,
         };
-        let rigour = Rigour::default();
+        let accuracy = Accuracy::default();
         let ran = record(
             &scene,
             PolicyKind::Supervisor,
             recorders,
-            rigour,
+            accuracy,
             &mut |_| {},
         );
         let planes = ran.unwrap_or_default();

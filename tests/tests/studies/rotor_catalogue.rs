@@ -2,7 +2,7 @@
 //! it is called.
 
 use firmware_bench::device::whole_levitation::WholeLevitationParams;
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -87,14 +87,14 @@ fn the_script_computes_the_stored_loops() {
             .arg("--check")
             .output()
             .unwrap();
-        let said = String::from_utf8(ran.stdout).unwrap();
-        let off: Vec<f64> = (said.lines())
+        let shown = String::from_utf8(ran.stdout).unwrap();
+        let off: Vec<f64> = (shown.lines())
             .map(|line| line.split_once(' ').unwrap().1.parse().unwrap())
             .collect();
         assert_eq!(
             off.len(),
             4,
-            "{said}{}",
+            "{shown}{}",
             String::from_utf8_lossy(&ran.stderr)
         );
         (ran.status.success(), off)
@@ -228,8 +228,8 @@ fn seals_are_touched(plant: &RotorPlant, hardest: Hardest) {
 
 /// Figures of the planes under levitation alone.
 fn levitated(scene: &Scene) -> Vec<Figures> {
-    let (nobody, rigour) = (Recorders::default(), Rigour::default());
-    let ended = record(scene, PolicyKind::Levitation, nobody, rigour, &mut |_| {}).unwrap();
+    let (nobody, accuracy) = (Recorders::default(), Accuracy::default());
+    let ended = record(scene, PolicyKind::Levitation, nobody, accuracy, &mut |_| {}).unwrap();
     ended.into_iter().map(|(figures, _)| figures).collect()
 }
 

@@ -1,7 +1,7 @@
 //! How well the supervisor has to know its machine: with its data configured wrong as data commonly are.
 
 use firmware_bench::scene::Scene;
-use firmware_studies::machines::drawn::Machine;
+use firmware_studies::machines::random::RandomMachine;
 use firmware_studies::overloads::contenders::Contender;
 use firmware_studies::overloads::results::ResultRow;
 use firmware_studies::sensitivity::misjudged;
@@ -67,7 +67,7 @@ fn a_rotor_that_turns_round_near_the_wall_does_not_rest() {
         .find(|m| m.text == "all at once, draw 7")
         .unwrap();
     for number in [0, 13] {
-        let unseen = Machine::unseen(number).unwrap();
+        let unseen = RandomMachine::unseen(number).unwrap();
         let trials = Trial::on(&unseen.plant(), &unseen.gains().unwrap());
         let rows: Vec<(ResultRow, ResultRow)> = (trials.par_iter())
             .map(|trial| {
@@ -183,8 +183,8 @@ fn what_cannot_be_configured_wrong_is_refused() {
             .args(&args[1..]))
         .output()
         .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(expected), "{said}");
+        let shown = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{shown}");
+        assert!(shown.contains(expected), "{shown}");
     }
 }

@@ -3,13 +3,13 @@
 //! Every eighth of the starts that the page of results tells of; all of them with `ALL_STARTS=1` in the environment.
 
 use plant_model::params::{EllipseParams, PlantParams, RingParams, StatorParams};
-use plant_model::{Inputs, Method, Mode, Options, V2, build};
+use plant_model::{ContactMode, Inputs, Method, Options, V2, build};
 use system_tests::plants::{bouncing, bouncing_start};
 
 /// Where a run ends and how it came there.
 struct Ending {
     position_m: V2,
-    changes: Vec<Mode>,
+    changes: Vec<ContactMode>,
 }
 
 fn run(params: &PlantParams, speed_m_s: f64, forced: bool, method: Method, rtol: f64) -> Ending {

@@ -13,7 +13,7 @@ fn study(args: &[&str]) -> Output {
     host().arg("study").args(args).output().unwrap()
 }
 
-fn said(bytes: &[u8]) -> String {
+fn utf8(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
@@ -28,13 +28,13 @@ fn the_list_names_every_study() {
         names,
         STUDIES.iter().map(|study| study.name).collect::<Vec<_>>()
     );
-    let text = said(&study(&["list"]).stdout);
+    let text = utf8(&study(&["list"]).stdout);
     for known in STUDIES {
         assert!(text.contains(known.about), "{}", known.name);
     }
     let unknown = study(&["weather"]);
     assert_eq!(unknown.status.code(), Some(2));
-    assert!(said(&unknown.stderr).contains("unseen-machines"));
+    assert!(utf8(&unknown.stderr).contains("unseen-machines"));
 }
 
 /// Claims have the keys that programs know, and hold or not by their own numbers; a claim that does not hold is an error
@@ -71,7 +71,7 @@ fn claims_for_programs() {
         .iter()
         .find(|claim| !claim["holds"].as_bool().unwrap())
         .unwrap();
-    assert!(said(&strict.stderr).contains(broken["name"].as_str().unwrap()));
+    assert!(utf8(&strict.stderr).contains(broken["name"].as_str().unwrap()));
 
     let rows = study(&["rub", "--quick", "--machines", "1", "--json"]);
     let json: Value = serde_json::from_slice(&rows.stdout).unwrap();
@@ -82,7 +82,7 @@ fn claims_for_programs() {
     let lenient = study(&["rub", "--quick", "--machines", "1", "--out", out]);
     assert!(lenient.status.success());
     assert!(folder.path().join("rub.html").is_file());
-    let text = said(&lenient.stdout);
+    let text = utf8(&lenient.stdout);
     assert_fits(&text, 80);
     let (_, last) = text.trim_end().rsplit_once('\n').unwrap();
     let (kept, of) = last.split_once(" of ").unwrap();
@@ -129,7 +129,7 @@ fn the_page_of_a_study() {
 
     let refused = write("harm");
     assert_eq!(refused.status.code(), Some(2));
-    assert!(said(&refused.stderr).contains("<!-- study accuracy: "));
+    assert!(utf8(&refused.stderr).contains("<!-- study accuracy: "));
     assert!(fs::read_to_string(&path).unwrap().contains("of before"));
 }
 

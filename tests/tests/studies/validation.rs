@@ -110,7 +110,7 @@ fn without_a_record_it_says_what_it_needs() {
         "time_s,exciter_force_x_n,disc_x_m,disc_y_m\n0,0,0,0\n1e-4,0,0,0\n",
     )
     .unwrap();
-    for (args, said) in [
+    for (args, shown) in [
         (&["validation"][..], "--record FILE.csv"),
         (&["validation", "--record", "none.csv"], "none.csv: "),
         (
@@ -126,6 +126,6 @@ fn without_a_record_it_says_what_it_needs() {
         assert_eq!(ended.status.code(), Some(2), "{args:?}");
         let text = String::from_utf8_lossy(&ended.stderr).replace('\n', " ");
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(text.contains(said), "{text}");
+        assert!(text.contains(shown), "{text}");
     }
 }

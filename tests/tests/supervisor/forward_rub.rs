@@ -33,7 +33,7 @@ fn rubs(commands: &[Command]) -> usize {
 /// Said once, soon after contact is known to last, at the spin's rate and no other.
 #[test]
 fn said_once_and_only_of_the_spins_rate() {
-    for (rate, said) in [
+    for (rate, expected) in [
         (1.0, 1),
         (0.82, 1),
         (1.18, 1),
@@ -41,7 +41,7 @@ fn said_once_and_only_of_the_spins_rate() {
         (1.35, 0),
         (-1.0, 0),
     ] {
-        assert_eq!(rubs(&commands_at(rate)), said, "{rate} ×");
+        assert_eq!(rubs(&commands_at(rate)), expected, "{rate} ×");
     }
     let commands = commands_at(1.0);
     let at = commands
@@ -90,7 +90,7 @@ fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
         let scene = unbalanced(plant, eccentricity_m);
         let found = stored(plant, RATE_HZ).unwrap();
         let run = |policy, name| run_policy(&scene, (policy, name), Keep::Verdict, &mut |_| {});
-        let (supervisor, tape) = recording(&scene.planes[0].supervisor.unwrap()).unwrap();
+        let (supervisor, log) = recording(&scene.planes[0].supervisor.unwrap()).unwrap();
         let mut with_levitation = scene.clone();
         with_levitation.planes[0].levitation = Some(found.tuned);
         let supervised = supervised(&with_levitation, supervisor).unwrap();
@@ -100,7 +100,7 @@ fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
             .unwrap();
         let (alone, _) = run(alone, "levitation").unwrap();
 
-        let ticks = tape.take();
+        let ticks = log.take();
         let commands: Vec<Command> = ticks.iter().map(|(_, command)| *command).collect();
         let all = commands
             .iter()

@@ -5,8 +5,8 @@ use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::supervision::Supervision;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::suggest::suggested;
-use firmware_studies::machines::drawn::Machine;
 use firmware_studies::machines::plants::plants;
+use firmware_studies::machines::random::RandomMachine;
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
 use firmware_studies::overloads::contenders::{Contender, Task};
@@ -21,7 +21,7 @@ use supervisor::Mode;
 fn what_levitation_carries_it_is_given() {
     let (mut carried, mut touched) = (0, 0);
     for number in 0..12 {
-        let unseen = Machine::unseen(number).unwrap();
+        let unseen = RandomMachine::unseen(number).unwrap();
         if unseen.lateness() > 0.8 {
             continue;
         }
@@ -55,14 +55,14 @@ fn what_levitation_carries_it_is_given() {
                 continue;
             }
             let (own, trace) = run(Contender::Supervisor);
-            let said = format!("{}: {share} caps, landing {landing}", unseen.text);
-            assert!(own.recovered, "{said}: {own:?}");
+            let shown = format!("{}: {share} caps, landing {landing}", unseen.text);
+            assert!(own.recovered, "{shown}: {own:?}");
             let last = trace.rows.iter().filter(|row| row.plant.t_s > 0.45);
             let modes: Vec<Mode> = last
                 .filter_map(firmware_bench::run::trace::TraceRow::supervisor_mode)
                 .collect();
             let levitated = modes.iter().filter(|m| **m == Mode::Levitated).count();
-            assert!(10 * levitated > 9 * modes.len(), "{said}");
+            assert!(10 * levitated > 9 * modes.len(), "{shown}");
             carried += 1;
             touched += usize::from(own.impacts > 0);
         }
@@ -117,8 +117,8 @@ fn a_coarse_converter_is_no_stuck_sensor() {
                 .unwrap();
             let run = (acting, Contender::Supervisor.name());
             let (_, trace) = run_policy(&scene, run, Keep::Trace, &mut |_| {}).unwrap();
-            let told = Supervision::of(&trace).unwrap();
-            assert_eq!(told.sensor_faults, 0, "{} at {rate_hz} Hz", plant.name);
+            let seen = Supervision::of(&trace).unwrap();
+            assert_eq!(seen.sensor_faults, 0, "{} at {rate_hz} Hz", plant.name);
         }
     }
 }

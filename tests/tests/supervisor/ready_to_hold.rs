@@ -53,7 +53,7 @@ fn a_rising_load_is_not_handed_over_again_and_again() {
             let samples = trace.rows.iter().filter(|row| !row.mode_change);
             let handed_over = samples
                 .filter_map(|row| row.supervisor)
-                .filter(|said| said.events.contains(Events::HANDOVER))
+                .filter(|trace| trace.events.contains(Events::HANDOVER))
                 .count();
             assert!(
                 handed_over <= 6,

@@ -62,15 +62,15 @@ fn nothing_is_torn_where_both_run_at_once() {
     let published = reader.published();
     let over = AtomicBool::new(false);
     let (mut events, mut records) = (Vec::new(), Vec::new());
-    let (mut told, mut reports) = (Vec::new(), 0_u32);
+    let (mut ticked, mut reports) = (Vec::new(), 0_u32);
     std::thread::scope(|scope| {
         let ticks = scope.spawn(|| {
-            let mut told: Vec<(u32, Command)> = Vec::new();
+            let mut ticked: Vec<(u32, Command)> = Vec::new();
             let mut i = 0;
-            while told.len() < 400 || i % LANDING != 0 {
+            while ticked.len() < 400 || i % LANDING != 0 {
                 let command = ticker.tick(&sample(i, landing(i)));
                 if !command.events.is_empty() {
-                    told.push((i, command));
+                    ticked.push((i, command));
                 }
                 i += 1;
                 if i % LANDING == 0 {
@@ -79,7 +79,7 @@ fn nothing_is_torn_where_both_run_at_once() {
                 }
             }
             over.store(true, Ordering::Release);
-            told
+            ticked
         });
         scope.spawn(|| {
             let mut last = 0;
@@ -96,13 +96,13 @@ fn nothing_is_torn_where_both_run_at_once() {
         while !over.load(Ordering::Acquire) {
             taken(&mut reader, &mut events, &mut records);
         }
-        told = ticks.join().unwrap();
+        ticked = ticks.join().unwrap();
     });
     taken(&mut reader, &mut events, &mut records);
     let replays: usize = records.iter().map(|bytes| replayed(bytes)).sum();
     assert!(reports > 0 && replays > 0, "{reports} {replays}");
-    // In order, each as it was told; where one was lost the next one says so.
-    let mut told = told.into_iter();
+    // In order, each as it was published; where one was lost the next one says so.
+    let mut ticked = ticked.into_iter();
     for event in events {
         let lost = event.events.contains(Events::QUEUE_FULL);
         let asked = event.events - Events::QUEUE_FULL - Events::RECORD_FROZEN;
@@ -110,9 +110,9 @@ fn nothing_is_torn_where_both_run_at_once() {
             continue;
         }
         let (sequence, command) = if lost {
-            told.find(|(sequence, _)| *sequence == event.sequence)
+            ticked.find(|(sequence, _)| *sequence == event.sequence)
         } else {
-            told.next()
+            ticked.next()
         }
         .unwrap();
         assert_eq!(sequence, event.sequence);

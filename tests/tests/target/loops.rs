@@ -131,7 +131,7 @@ fn the_example_firmware_records_a_landing() {
     }
 }
 
-/// At a quarter of that pace the ticks of the landing last longer than a period: they are told to be late and counted, their
+/// At a quarter of that pace the ticks of the landing last longer than a period: they are flagged as late and counted, their
 /// events fill the queue, in which there is no room for those of the landing, and it is recorded all the same. Back at rest the
 /// firmware keeps its pace.
 #[test]

@@ -16,8 +16,8 @@ fn words(row: &str) -> (usize, Vec<u32>) {
 type Port = Box<dyn FnMut(u32, Status, [u32; 7]) -> [u32; 9]>;
 
 /// The columns of a command.
-fn answer([f_x, f_y, o_x, o_y, severity]: [u32; 5], said: [u32; 4]) -> [u32; 9] {
-    let [mode, limits, events, integrator] = said;
+fn answer([f_x, f_y, o_x, o_y, severity]: [u32; 5], flags: [u32; 4]) -> [u32; 9] {
+    let [mode, limits, events, integrator] = flags;
     [
         f_x, f_y, o_x, o_y, severity, mode, limits, events, integrator,
     ]
@@ -37,13 +37,13 @@ fn float(config: &Config) -> Port {
         });
         let ([f_x, f_y], [o_x, o_y]) = (command.force_n, command.own_n);
         let numbers = [f_x, f_y, o_x, o_y, command.severity].map(f32::to_bits);
-        let said = [
+        let flags = [
             command.mode as u32,
             command.limits.bits(),
             command.events.bits(),
             command.integrator as u32,
         ];
-        answer(numbers, said)
+        answer(numbers, flags)
     })
 }
 
@@ -61,13 +61,13 @@ fn fixed(config: &Config) -> Port {
         });
         let ([f_x, f_y], [o_x, o_y]) = (command.force, command.own);
         let numbers = [f_x, f_y, o_x, o_y, command.severity].map(|q| q.to_bits() as u32);
-        let said = [
+        let flags = [
             command.mode as u32,
             command.limits.bits(),
             command.events.bits(),
             command.integrator as u32,
         ];
-        answer(numbers, said)
+        answer(numbers, flags)
     })
 }
 
@@ -92,8 +92,8 @@ fn right(folder: &std::path::Path, number: &str, port: fn(&Config) -> Port) -> (
         for (piece, row) in ticks.by_ref().take(words_of[0] as usize).map(words) {
             assert_eq!(piece, i);
             // A record of another length freezes at another tick.
-            let told = row[2..9].try_into().unwrap();
-            let mut commanded = tick(row[0], Status::from_bits_retain(row[1]), told);
+            let inputs = row[2..9].try_into().unwrap();
+            let mut commanded = tick(row[0], Status::from_bits_retain(row[1]), inputs);
             let mut expected: [u32; 9] = row[9..].try_into().unwrap();
             for events in [&mut commanded[7], &mut expected[7]] {
                 *events &= !supervisor::Events::RECORD_FROZEN.bits();
@@ -115,10 +115,10 @@ fn a_port_has_every_bit_from_the_text() {
         .arg(folder.path())
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stdout);
+    let text = String::from_utf8_lossy(&output.stdout);
     assert!(
-        output.status.success() && said.contains("45 of 45 ways"),
-        "{said}"
+        output.status.success() && text.contains("45 of 45 ways"),
+        "{text}"
     );
     for (number, port) in [("f32", float as fn(&Config) -> Port), ("q", fixed)] {
         let (right, all) = right(folder.path(), number, port);

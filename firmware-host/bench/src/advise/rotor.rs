@@ -95,13 +95,13 @@ impl RotorAdvice {
             if !mode.grows() || self.role.name != "full" {
                 continue;
             }
-            let better = (mode.told_damping_ratio).filter(|told| *told > mode.added_damping_ratio);
+            let better = (mode.told_damping_ratio).filter(|with| *with > mode.added_damping_ratio);
             let _ = match better {
-                Some(told) => writeln!(
+                Some(with) => writeln!(
                     text,
                     "    do: set bending_first_hz = {} (or bending_second_hz) in [supervisor]; then the force adds {}",
                     figures(mode.frequency_hz),
-                    percent(told)
+                    percent(with)
                 ),
                 None => writeln!(
                     text,

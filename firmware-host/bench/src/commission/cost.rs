@@ -1,9 +1,9 @@
-//! What it costs to be told a number wrong, as the study `sensitivity` measured it on 1815 blows of 31 machines
+//! What a wrongly configured number costs, as the study `sensitivity` measured it on 1815 blows of 31 machines
 //! (docs/src/measured/sensitivity.md): so contradictions stand in the order in which they matter.
 
-/// A number that is told so many times as large as it is: blows that levitation alone recovers from and the supervisor then
-/// does not, of 1467, and the 95th percentile of the contact force over that of the supervisor told right.
-struct Told {
+/// A number that is configured so many times as large as it is: blows that levitation alone recovers from and the supervisor then
+/// does not, of 1467, and the 95th percentile of the contact force over that of the supervisor configured right.
+struct Row {
     times: f64,
     lost: f64,
     force: f64,
@@ -11,74 +11,62 @@ struct Told {
 
 const BLOWS: f64 = 1467.0;
 
-const fn told(times: f64, lost: f64, force: f64) -> Told {
-    Told { times, lost, force }
+const fn row(times: f64, lost: f64, force: f64) -> Row {
+    Row { times, lost, force }
 }
 
 /// By the end of the name; in the order of `times`. Of what the study gives a loss alone the force is left as it is.
-const MEASURED: &[(&str, &[Told])] = &[
+const MEASURED: &[(&str, &[Row])] = &[
     (
         "mass_kg",
         &[
-            told(0.64, 0.0, 1.19),
-            told(0.8, 0.0, 1.09),
-            told(1.0, 0.0, 1.0),
-            told(1.25, 0.0, 1.02),
-            told(1.56, 0.0, 1.02),
+            row(0.64, 0.0, 1.19),
+            row(0.8, 0.0, 1.09),
+            row(1.0, 0.0, 1.0),
+            row(1.25, 0.0, 1.02),
+            row(1.56, 0.0, 1.02),
         ],
     ),
     (
         "stiffness_n_m",
         &[
-            told(0.51, 0.0, 1.01),
-            told(1.0, 0.0, 1.0),
-            told(1.96, 0.0, 1.01),
+            row(0.51, 0.0, 1.01),
+            row(1.0, 0.0, 1.0),
+            row(1.96, 0.0, 1.01),
         ],
     ),
     (
         "clearance_m",
         &[
-            told(0.826, 0.0, 1.08),
-            told(0.909, 0.0, 1.05),
-            told(1.0, 0.0, 1.0),
-            told(1.1, 0.0, 1.14),
-            told(1.21, 2.0, 1.45),
+            row(0.826, 0.0, 1.08),
+            row(0.909, 0.0, 1.05),
+            row(1.0, 0.0, 1.0),
+            row(1.1, 0.0, 1.14),
+            row(1.21, 2.0, 1.45),
         ],
     ),
-    // A cap is told too small where a force is more than it is said to be.
+    // A cap is configured too small where a force is more than configured.
     (
         "force_factor",
         &[
-            told(0.64, 28.0, 25.07),
-            told(0.8, 8.0, 1.96),
-            told(1.0, 0.0, 1.0),
-            told(1.25, 0.0, 1.10),
-            told(1.56, 0.0, 1.19),
+            row(0.64, 28.0, 25.07),
+            row(0.8, 8.0, 1.96),
+            row(1.0, 0.0, 1.0),
+            row(1.25, 0.0, 1.10),
+            row(1.56, 0.0, 1.19),
         ],
     ),
     (
         "time_to_force_s",
-        &[
-            told(1.0, 0.0, 1.0),
-            told(2.0, 0.0, 1.0),
-            told(4.0, 10.0, 1.0),
-        ],
+        &[row(1.0, 0.0, 1.0), row(2.0, 0.0, 1.0), row(4.0, 10.0, 1.0)],
     ),
     (
         "sensor_noise_m",
-        &[
-            told(1.0, 0.0, 1.0),
-            told(3.0, 0.0, 1.0),
-            told(9.0, 3.0, 1.0),
-        ],
+        &[row(1.0, 0.0, 1.0), row(3.0, 0.0, 1.0), row(9.0, 3.0, 1.0)],
     ),
     (
         "inertia_kg_m2",
-        &[
-            told(0.8, 0.0, 1.0),
-            told(1.0, 0.0, 1.0),
-            told(1.25, 0.0, 1.0),
-        ],
+        &[row(0.8, 0.0, 1.0), row(1.0, 0.0, 1.0), row(1.25, 0.0, 1.0)],
     ),
 ];
 
@@ -87,7 +75,7 @@ const OF_SIGN: [&str; 2] = ["axes_handedness", "spin_sense"];
 /// Beyond this angle a force pushes away from where it should \[rad\].
 const TURNED_AWAY_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
-/// What it costs: runs that are lost, as a share, and contact force over that of a supervisor told right.
+/// What it costs: runs that are lost, as a share, and contact force over that of a supervisor configured right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cost {
     pub(super) lost: f64,
@@ -139,7 +127,7 @@ impl Cost {
 }
 
 /// Between rows by the logarithm of how often; beyond them as between the last two.
-fn interpolated(rows: &[Told], times: f64, of: impl Fn(&Told) -> f64) -> f64 {
+fn interpolated(rows: &[Row], times: f64, of: impl Fn(&Row) -> f64) -> f64 {
     let at = times.ln();
     let above = rows.iter().position(|row| row.times >= times);
     let above = above.unwrap_or(rows.len() - 1).max(1);

@@ -31,13 +31,13 @@ impl OfRecord {
         let mut configured = Vec::new();
         match event.findings() {
             Some(findings) => {
-                let told = findings.identified;
+                let identified = findings.identified;
                 let unclear = "its contacts do not show it closely enough: give the record of a longer touch-down";
                 for (name, unit, estimate) in [
-                    ("friction_coefficient", "1", told.friction_coefficient),
-                    ("restitution", "1", told.restitution),
-                    ("clearance_m", "m", told.clearance_m),
-                    ("eccentricity_m", "m", told.eccentricity_m),
+                    ("friction_coefficient", "1", identified.friction_coefficient),
+                    ("restitution", "1", identified.restitution),
+                    ("clearance_m", "m", identified.clearance_m),
+                    ("eccentricity_m", "m", identified.eccentricity_m),
                 ] {
                     match estimate {
                         Some(estimate) => found.parameters.push(of_contacts(name, unit, estimate)),

@@ -39,7 +39,7 @@ const DELAYS: [f64; 7] = [0.0, 1.0, 2.0, 3.0, 5.0, 8.0, MOST_DELAY];
 const LEAST_SPIN: f64 = 0.02;
 
 /// Places of the numbers: both matrices by rows, m/I_t, I_p/I_t, stiffness over mass and delay of each, how far the centre of mass lies from
-/// where it is told, and by how much the second sensor is turned against the first.
+/// where it is known, and by how much the second sensor is turned against the first.
 const MATRICES: [usize; 2] = [0, 4];
 const RATIO: usize = 8;
 const POLAR: usize = 9;

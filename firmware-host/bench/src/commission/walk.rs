@@ -245,9 +245,9 @@ mod tests {
         ] {
             let found = walked(noise_m, lift_m);
             for (is, [low, value, high]) in [2e-4, 1e-5, -2e-5].into_iter().zip(found) {
-                let said = format!("noise {noise_m}, lift {lift_m}: {low} {value} {high}");
-                assert!(low <= is && is <= high, "{is} at {said}");
-                assert!(lift_m > 0.0 || high - low < 0.01 * 2e-4, "{said}");
+                let case = format!("noise {noise_m}, lift {lift_m}: {low} {value} {high}");
+                assert!(low <= is && is <= high, "{is} at {case}");
+                assert!(lift_m > 0.0 || high - low < 0.01 * 2e-4, "{case}");
             }
         }
     }

@@ -95,7 +95,7 @@ impl PartialEq for Caller {
     }
 }
 
-/// Which controller, and what it is told.
+/// Which controller, and its configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExternalParams {
     /// What computes the forces.
@@ -249,7 +249,7 @@ impl External {
         }
         let asked = match &mut self.asked {
             Asked::Process(process, bytes) => {
-                question.put(bytes);
+                question.encode(bytes);
                 process.asked(bytes)
             }
             Asked::Caller(controller) => controller.step(question),

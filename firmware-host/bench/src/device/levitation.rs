@@ -28,7 +28,7 @@ pub struct SetDown {
     pub duration_s: f64,
     /// Where, as seen from the centre of the magnets \[m\].
     pub to_m: V2,
-    /// Whether the supervisor is told.
+    /// Whether the supervisor is informed.
     pub announced: bool,
 }
 

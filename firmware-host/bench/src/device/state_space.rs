@@ -25,7 +25,7 @@ pub struct StateSpaceParams {
     pub caps_n: Vec<Option<f64>>,
 }
 
-/// The controller. What an amplifier cuts off it is not told of.
+/// The controller. What an amplifier cuts off is not fed back to it.
 #[derive(Debug, Clone)]
 pub struct StateSpace {
     params: StateSpaceParams,

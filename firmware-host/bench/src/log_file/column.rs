@@ -33,7 +33,7 @@ pub(super) enum Held {
     Known(Step),
 }
 
-/// How far apart two neighbouring numbers of a column can be told.
+/// Resolution of a column: how far apart two neighbouring numbers are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Step {
     pub(super) size: f64,

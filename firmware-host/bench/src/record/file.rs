@@ -56,7 +56,7 @@ pub enum Damage {
 pub struct PlaneRecord {
     /// What it is.
     pub head: Head,
-    /// What came of the event.
+    /// Outcome of the event.
     pub summary: Option<Summary>,
     /// The supervisor's configuration.
     pub config: Option<Config>,

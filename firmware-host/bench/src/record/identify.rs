@@ -3,7 +3,7 @@
 use crate::record::contacts::{Contact, Found, meets};
 use crate::record::flights::Fit;
 use crate::record::motion::{Instant, Motion, is_measured};
-use crate::record::story::Event;
+use crate::record::narrative::Event;
 use plant_model::V2;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
@@ -20,7 +20,7 @@ pub struct Estimate {
     pub high: f64,
 }
 
-/// What can be told; `None` of what the record does not show closely enough.
+/// What is identified; `None` of what the record does not show closely enough.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Identified {
     pub friction_coefficient: Option<Estimate>,
@@ -87,7 +87,7 @@ impl Event<'_> {
             return None;
         };
         let config = record.config.filter(|_| record.head.planes == 1)?;
-        // How much of the delay is the sensor's is not told.
+        // How much of the delay is the sensor's is not known.
         let delay = config.delay_samples.clamp(0.0, 7.0) as usize;
         // By commands alone forces come at the time that the whole delay says.
         let latest = if is_measured(record.entries.values()) {
@@ -277,8 +277,8 @@ fn clearance(motion: &Motion, fit: &Fit<'_>, before: usize) -> Option<f64> {
         let [from, to] = meets(fit, before, radius_m);
         Some(to? - from?)
     };
-    let told = motion.clearance_m();
-    let (mut low, mut high) = (0.9 * told, 1.1 * told);
+    let configured = motion.clearance_m();
+    let (mut low, mut high) = (0.9 * configured, 1.1 * configured);
     for _ in 0..20 {
         let middle = 0.5 * (low + high);
         // Farther out the flights meet later and part sooner.

@@ -28,7 +28,7 @@ pub(super) struct Instant {
 pub(super) struct Motion {
     /// Length of a tick \[s\].
     pub(super) period_s: f64,
-    /// What the supervisor was told of the machine.
+    /// The machine as the supervisor was configured.
     pub(super) config: Config,
     /// Whether the spin is known throughout.
     pub(super) spin_known: bool,
@@ -88,12 +88,12 @@ impl Motion {
         f64::from(self.config.mass_kg)
     }
 
-    /// Clearance that the supervisor was told \[m\].
+    /// Clearance that the supervisor was configured with \[m\].
     pub(super) fn clearance_m(&self) -> f64 {
         f64::from(self.config.clearance_m)
     }
 
-    /// How long an impact lasts by what was told \[ticks\].
+    /// How long an impact lasts as configured \[ticks\].
     pub(super) fn impact_ticks(&self) -> f64 {
         let stiffness = f64::from(self.config.contact_stiffness_n_m);
         std::f64::consts::PI * (self.mass_kg() / stiffness).sqrt() / self.period_s

@@ -1,6 +1,6 @@
 //! How many landings a retainer bearing may still bear, by its ledger or, without one, by what the record itself has counted.
 
-use crate::record::story::{Event, percent};
+use crate::record::narrative::{Event, percent};
 use serde::Serialize;
 use supervisor::{LEDGER_BYTES, Ledger, LedgerError};
 
@@ -137,7 +137,7 @@ impl Remaining {
     }
 
     /// In two sentences.
-    pub fn told(&self) -> String {
+    pub fn sentences(&self) -> String {
         let landings = match self.landings {
             1 => "1 landing has".to_owned(),
             n => format!("{n} landings have"),

@@ -8,7 +8,7 @@ use supervisor::{
     SUPERVISOR_VERSION, Scalar,
 };
 
-/// What came of it.
+/// Outcome of a replay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Replay {
     /// Ticks that were replayed, in all planes.

@@ -157,9 +157,9 @@ impl PlaneRecord {
             .map(|(_, at)| *at);
         self.track.iter().map(move |stretch| {
             let ticks = i64::from(stretch.ticks);
-            let told = self.tick_of(stretch.sequence) + 1;
+            let counted = self.tick_of(stretch.sequence) + 1;
             // Calls without a new sample have the number of the last one.
-            let to = end.map_or(told, |end| told.max(end + ticks));
+            let to = end.map_or(counted, |end| counted.max(end + ticks));
             end = Some(to);
             (stretch, [to - ticks, to])
         })

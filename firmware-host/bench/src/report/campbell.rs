@@ -1,11 +1,11 @@
 //! A whole rotor as a linear system, for people: tables, Campbell diagram, response to the unbalance, mode shapes.
 
-use super::drawn::Drawn;
 use super::html_page::{Head, HtmlPage};
 use super::lines::{Cell, lined, right};
 use super::plot::PlotError;
 use super::plot::chart::{Axis, Chart, Curve, Mark};
 use super::plot::text::figures;
+use super::rendered::Rendered;
 use crate::modes::{Analysis, Coupling, HeldWhirl, LoopAnalysis, ModeAtSpin, SensitivityCourse};
 use crate::scene::Scene;
 use plant_model::machine::linear::Direction;
@@ -183,7 +183,7 @@ pub fn html(scene: &Scene, analysis: &Analysis) -> Result<String, PlotError> {
     }
     // Without unbalance there is no response to it.
     plots.retain(|plot| plot.curves.iter().any(|curve| !curve.points.is_empty()));
-    let drawn: Vec<Drawn> = (plots.iter().map(Drawn::of_chart)).collect::<Result<_, _>>()?;
+    let drawn: Vec<Rendered> = (plots.iter().map(Rendered::of_chart)).collect::<Result<_, _>>()?;
     page.section("Modes", |page| page.figures(&drawn));
     page.about(&head);
     page.section("Tables", |page| page.lines(&text(scene, analysis)));

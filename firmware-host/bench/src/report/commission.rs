@@ -1,10 +1,10 @@
-//! What a log of a commissioning run told, as a page: how the machine answers and what the fit makes of it, numbers and differences.
+//! What a log of a commissioning run shows, as a page: how the machine answers, the fit, numbers and differences.
 
 use super::PlotError;
-use super::drawn::Drawn;
 use super::html_page::{Head, HtmlPage};
 use super::listing::{Column, Listing};
 use super::plot::chart::{Axis, Chart, Curve, Mark};
+use super::rendered::Rendered;
 use crate::commission::{Answer, AnswerPoint, Commissioned};
 
 /// A page of what was found in a log of this name.
@@ -19,11 +19,11 @@ pub fn html(log: &str, found: &Commissioned) -> Result<String, PlotError> {
     };
     let mut page = HtmlPage::begun(&head);
     let answers = || found.answers.iter().filter(|a| !a.points.is_empty());
-    let fits: Vec<Drawn> = answers()
-        .map(|answer| Drawn::of_chart(&fit(answer)))
+    let fits: Vec<Rendered> = answers()
+        .map(|answer| Rendered::of_chart(&fit(answer)))
         .collect::<Result<_, _>>()?;
-    let rests: Vec<Drawn> = answers()
-        .map(|answer| Drawn::of_chart(&rest(answer)))
+    let rests: Vec<Rendered> = answers()
+        .map(|answer| Rendered::of_chart(&rest(answer)))
         .collect::<Result<_, _>>()?;
     if !fits.is_empty() {
         page.section("Answer to the stimulus", |page| page.figures(&fits));

@@ -5,11 +5,11 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use super::drawn::Drawn;
 use super::html_page::{Head, HtmlPage};
 use super::markup::Markup;
 use super::panels::{Key, PanelRow, Shown, View};
 use super::push;
+use super::rendered::Rendered;
 use super::track::{ROTOR_MODES, SUPERVISOR_MODES, Track};
 use crate::report::plot::text::{escape, hex};
 use crate::report::plot::thin::{Band, Interval, drawable, one_band_a_column};
@@ -131,7 +131,7 @@ impl Document {
                         false => "",
                     };
                     let caption = format!("<b>{}</b> {}{own}", escape(of.name), outcome.as_html());
-                    let drawn = Drawn {
+                    let drawn = Rendered {
                         id: None,
                         caption: Markup::written(caption),
                         // For readers without script, and for paper.

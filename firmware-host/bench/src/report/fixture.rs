@@ -1,6 +1,6 @@
 //! Small scenes and runs for tests.
 
-use plant_model::{Body, Mode, Snapshot, V2};
+use plant_model::{Body, ContactMode, Snapshot, V2};
 
 use crate::report::summary::SceneSummary;
 use crate::run::figures::{Figures, Timing};
@@ -74,9 +74,9 @@ pub(crate) fn row(t_s: f64, contact: bool) -> TraceRow {
         spin_rad_s: 600.0,
         race_spin_rad_s: 0.0,
         mode: if contact {
-            Mode::SlipPositive
+            ContactMode::SlipPositive
         } else {
-            Mode::Flight
+            ContactMode::Flight
         },
         penetration_m: if contact { 1e-5 } else { -1e-4 },
         normal_force_n: if contact { 1e3 } else { 0.0 },

@@ -8,10 +8,10 @@ use crate::report::plot::text::figures;
 use crate::run::supervision::{Happening, Happenings, names};
 use crate::run::verdict::PolicyRun;
 
-/// So many rows of a record are told.
+/// So many rows of a record are listed.
 const MOST: usize = Happenings::MOST;
 
-/// One table for each run with a supervisor, told with the name of its plane, if it has one.
+/// One table for each run with a supervisor, headed by the name of its plane, if it has one.
 pub(super) fn push_tables(page: &mut HtmlPage, runs: &[&PolicyRun], plane: Option<&str>) {
     for run in runs.iter().filter(|run| run.supervision.is_some()) {
         let name = match plane {
@@ -65,12 +65,12 @@ fn push_table(page: &mut HtmlPage, name: &str, run: &PolicyRun) {
 }
 
 fn row(happening: &Happening) -> (Markup, [String; 4]) {
-    let (t_ms, said) = (1e3 * happening.t_s, happening.said);
-    let events = names(said.events.iter_names());
+    let (t_ms, supervisor) = (1e3 * happening.t_s, happening.supervisor);
+    let events = names(supervisor.events.iter_names());
     let words = [
-        said.mode.name().to_owned(),
-        figures(said.severity.into()),
-        names(said.limits.iter_names()),
+        supervisor.mode.name().to_owned(),
+        figures(supervisor.severity.into()),
+        names(supervisor.limits.iter_names()),
         match happening.touches_before {
             0 => events,
             touches => format!("{events} (touches before: {touches})"),

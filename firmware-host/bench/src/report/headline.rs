@@ -1,7 +1,7 @@
 //! The conclusion of a page in a sentence or two, before any number.
 
 use super::plot::text::figures;
-use crate::record::story::percent;
+use crate::record::narrative::percent;
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::supervision::Supervision;
@@ -16,7 +16,7 @@ pub(super) struct Concluded<'a> {
 }
 
 impl<'a> Concluded<'a> {
-    /// A run, with what each of its planes came to, and the severity limit of its supervisor.
+    /// A run, with the outcome of each of its planes, and the severity limit of its supervisor.
     pub(super) fn of(
         run: &'a PolicyRun,
         planes: impl Iterator<Item = (&'a PolicyRun, Option<f32>)>,
@@ -35,7 +35,7 @@ impl<'a> Concluded<'a> {
     }
 }
 
-/// Of runs of one scene: what came of the supervisor, of what it has seen, and of the others.
+/// Of runs of one scene: the outcome of the supervisor, of what it has seen, and of the others.
 pub(super) fn headline(runs: &[Concluded<'_>]) -> String {
     let others: Vec<&PolicyRun> = (runs.iter())
         .filter(|of| !of.is_supervised())

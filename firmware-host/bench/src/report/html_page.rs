@@ -1,10 +1,10 @@
 //! The one builder of pages: head with the conclusion first, sections of text, tables and figures, each figure with its numbers.
 //! A page that needs no script is complete with it; `document` adds what makes figures move.
 
-use super::drawn::Drawn;
 use super::listing::Listing;
 use super::markup::Markup;
 use super::push;
+use super::rendered::Rendered;
 use super::summary::Fact;
 use crate::report::plot::text::escape;
 
@@ -238,7 +238,7 @@ impl HtmlPage {
     }
 
     /// Drawings side by side, each with its name and its numbers.
-    pub fn figures(&mut self, figures: &[Drawn]) {
+    pub fn figures(&mut self, figures: &[Rendered]) {
         let panels = figures.len().max(1);
         push(
             &mut self.html,
@@ -253,8 +253,8 @@ impl HtmlPage {
     }
 
     /// One of them; `attributes` are its own.
-    pub(super) fn figure(&mut self, attributes: &str, figure: &Drawn) {
-        let Drawn {
+    pub(super) fn figure(&mut self, attributes: &str, figure: &Rendered) {
+        let Rendered {
             caption,
             drawing,
             data,
@@ -332,7 +332,7 @@ mod tests {
             page.paragraph(&Markup::prose(bad));
             page.points(&[Markup::text(bad)]);
             page.table(&listing);
-            let drawn = Drawn::new(bad, String::new(), listing.clone());
+            let drawn = Rendered::new(bad, String::new(), listing.clone());
             page.figures(&[drawn.numbered("name".to_owned(), "1.1", bad)]);
             page.lines(&format!("{bad}\nnext"));
         });

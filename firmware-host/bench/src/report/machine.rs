@@ -1,16 +1,16 @@
 //! The report on a whole rotor: its ends side by side, its axis over time and from the side, then each plane.
 
 use super::document::{Document, Times};
-use super::drawn::Drawn;
 use super::headline::{Concluded, headline};
 use super::html_page::Head;
 use super::markup::Markup;
 use super::panels::{PanelRow, Shown};
 use super::quantities::{BENDING_ENERGY, SLOPE, bending};
+use super::rendered::Rendered;
 use super::summary::{Fact, SceneSummary, summary};
 use super::track::Track;
 use super::{
-    disturbances_told, happenings, limits, push_far, push_sections, push_table, times_of,
+    disturbance_lines, happenings, limits, push_far, push_sections, push_table, times_of,
     verification, warnings,
 };
 use crate::report::plot::PlotError;
@@ -39,7 +39,7 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
         .collect();
     // What happens to sensors and magnets a seal does not know.
     let bearing = (scene.planes.iter().zip(&summaries)).find(|(plane, _)| !plane.seal);
-    let told = bearing.map_or(&summaries[0], |(_, summary)| summary);
+    let shown = bearing.map_or(&summaries[0], |(_, summary)| summary);
     let whole = &results.runs;
     let concluded: Vec<Concluded<'_>> = (whole.iter().enumerate())
         .map(|(i, run)| {
@@ -57,7 +57,7 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
         headline: headline(&concluded),
         story: scene.story.clone(),
         facts: facts(scene),
-        points: disturbances_told(&told.disturbances),
+        points: disturbance_lines(&shown.disturbances),
         warnings: warnings(&scene.warnings, results),
     };
     let mut document = Document::begun(&head);
@@ -74,7 +74,7 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
             .all
             .extend(runs.map(|run| Track::of_run(summary, run)));
     }
-    let times = times_of(told, &tracks.all);
+    let times = times_of(shown, &tracks.all);
     for policy in 0..tracks.policies {
         let name = &tracks.all[policy].name;
         let ends = tracks.ends(scene, policy);
@@ -109,11 +109,11 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
     });
     tracks.push_axes(&mut document, scene, &times)?;
     let sides = axes.map(|(run, axis)| {
-        let drawn = Drawn::of_chart(&from_the_side(&scene.machine, axis))?;
+        let drawn = Rendered::of_chart(&from_the_side(&scene.machine, axis))?;
         let caption = Markup::written(format!("<b>{}</b>", Markup::text(&run.name).as_html()));
-        Ok(Drawn { caption, ..drawn })
+        Ok(Rendered { caption, ..drawn })
     });
-    let sides: Vec<Drawn> = sides.collect::<Result<_, PlotError>>()?;
+    let sides: Vec<Rendered> = sides.collect::<Result<_, PlotError>>()?;
     (document.page).section("Axis from the side, at equal times", |page| {
         page.figures(&sides);
     });

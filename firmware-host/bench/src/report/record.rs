@@ -19,7 +19,7 @@ pub struct RecordPart {
     /// What it is of.
     pub heading: String,
     /// Paragraphs.
-    pub said: Vec<String>,
+    pub paragraphs: Vec<String>,
     /// Tables with their captions.
     pub tables: Vec<(String, Lines)>,
     /// Runs that are compared, as `run` shows them.
@@ -29,7 +29,7 @@ pub struct RecordPart {
 /// What stands above the figures and below them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RecordParts {
-    /// What came of the event.
+    /// Outcome of the event.
     pub above: Vec<RecordPart>,
     /// What it is found out from.
     pub below: Vec<RecordPart>,
@@ -40,7 +40,7 @@ fn push_parts(page: &mut HtmlPage, parts: &[RecordPart]) {
     const IN_SIGHT: usize = 16;
     for part in parts {
         page.section(&part.heading, |page| {
-            for text in &part.said {
+            for text in &part.paragraphs {
                 page.paragraph(&Markup::text(text));
             }
             page.columns(|page| {

@@ -139,10 +139,10 @@ fn facts(at: &At<'_>) -> Vec<Fact> {
         ));
     }
     if !at.own.overrides.is_empty() {
-        let told: Vec<String> = named(&at.own.overrides)
+        let overrides: Vec<String> = named(&at.own.overrides)
             .map(|(name, value)| format!("{name} {value}"))
             .collect();
-        facts.push(("Set in [supervisor]", told.join(", ")));
+        facts.push(("Set in [supervisor]", overrides.join(", ")));
     }
     facts.push((
         "Program",
@@ -364,7 +364,7 @@ fn change(c: &TimedChange) -> String {
 mod tests {
     use super::*;
 
-    fn said(scene: &str) -> (String, Vec<String>) {
+    fn facts_and_spans(scene: &str) -> (String, Vec<String>) {
         let summary = summary(&Scene::parse("test", scene).unwrap(), 0);
         let facts: Vec<String> = (summary.facts.iter())
             .map(|(name, value)| format!("{name} {value}"))
@@ -379,7 +379,7 @@ mod tests {
     #[test]
     fn what_decides_a_result_is_among_the_facts() {
         let scene = include_str!("../../scenes/shock_15_g_on_amb.toml");
-        let (facts, _) = said(scene);
+        let (facts, _) = facts_and_spans(scene);
         for fact in [
             "Contact stiffness 1e9 N/m",
             "Restitution 0.7",
@@ -414,7 +414,7 @@ mod tests {
             )
             .replacen("[sensor]", "[sensor]\ndelay_samples = 1", 1)
             + "\n[race]\ninertia_kg_m2 = 1e-3\ndrag_n_m_s = 1e-4\nstart_frequency_hz = 2.0\n";
-        let (facts, _) = said(&other);
+        let (facts, _) = facts_and_spans(&other);
         for fact in [
             "Contact Hunt and Crossley, 1e13 N/m^1.5",
             "Contact damping 0.5 s/m",
@@ -427,7 +427,7 @@ mod tests {
         }
         assert!(!facts.contains("Restitution") && !facts.contains("Contact stiffness"));
         let bore = "[retainer]\nellipticity = 0.05\nlong_axis_deg = 30.0\n";
-        let (facts, _) = said(&scene.replacen("[retainer]", bore, 1));
+        let (facts, _) = facts_and_spans(&scene.replacen("[retainer]", bore, 1));
         let fact = "Out of round by 0.05 of the clearance, longer at 30°";
         assert!(facts.contains(fact), "{facts}");
     }
@@ -435,7 +435,7 @@ mod tests {
     #[test]
     fn a_scene_is_told_whole() {
         let scene = include_str!("../../scenes/shock_15_g_on_amb.toml");
-        let (facts, _) = said(scene);
+        let (facts, _) = facts_and_spans(scene);
         for fact in ["Mass 10 kg", "Spin 200 Hz", "20 µm off", "seed 1"] {
             assert!(facts.contains(fact), "{facts}");
         }
@@ -444,7 +444,7 @@ mod tests {
             [[outage]]\nstart_s = 0.03\nduration_s = 0.01\naxis = \"y\"\nknown = true
             [[fault]]\nstart_s = 0.04\nduration_s = 0.01\nkind = \"offset\"\nvalue_m = 2e-5\naxis = \"x\"
             [[change]]\nat_s = 0.05\nfriction_coefficient = 0.3\neccentricity_m = 2e-6\n";
-        let (_, spans) = said(&format!("{scene}{more}"));
+        let (_, spans) = facts_and_spans(&format!("{scene}{more}"));
         assert_eq!(
             spans,
             [

@@ -74,7 +74,7 @@ const SUPERVISION_FIGURES: &[Row<Supervision>] = &[
         format!("{:.2}", s.longest_engagement_s * 1e3)
     }),
     ("engaged without a touch", |s| {
-        told(s, |account| account.nuisance_engagements.to_string())
+        account_cell(s, |account| account.nuisance_engagements.to_string())
     }),
     ("handed back", |s| s.handed_back.to_string()),
     ("highest expected severity", |s| {
@@ -82,31 +82,31 @@ const SUPERVISION_FIGURES: &[Row<Supervision>] = &[
     }),
     ("sensor faults", |s| s.sensor_faults.to_string()),
     ("landings seen", |s| {
-        told(s, |account| account.landings.to_string())
+        account_cell(s, |account| account.landings.to_string())
     }),
     ("severity index of them", |s| {
-        told(s, |account| format!("{:.3}", account.severity_index))
+        account_cell(s, |account| format!("{:.3}", account.severity_index))
     }),
     ("hardest impact seen [m/s]", |s| {
-        told(s, |account| figures(account.impact_speed_max_m_s))
+        account_cell(s, |account| figures(account.impact_speed_max_m_s))
     }),
     ("backward motion, of limit [%]", |s| {
-        told(s, |account| {
+        account_cell(s, |account| {
             figures(100.0 * account.backward_speed_max_m_s / account.whirl_limit_m_s)
         })
     }),
     ("asks to coast down", |s| {
-        told(s, |account| {
+        account_cell(s, |account| {
             let word = if account.coast_down { ASKS } else { "no" };
             word.to_owned()
         })
     }),
     ("configuration checked", |s| {
-        told(s, |account| account.checked.to_owned())
+        account_cell(s, |account| account.checked.to_owned())
     }),
 ];
 
-fn told(s: &Supervision, word: fn(&Account) -> String) -> String {
+fn account_cell(s: &Supervision, word: fn(&Account) -> String) -> String {
     s.account.as_ref().map_or("–".to_owned(), word)
 }
 
@@ -210,7 +210,7 @@ const ASKS: &str = "YES";
 /// … and before outcomes that are not that of the run.
 const OTHER: &str = "OTHER";
 
-/// Every figure that one of the runs has: its title with the unit, and a cell for each run. What came of it first, then what the
+/// Every figure that one of the runs has: its title with the unit, and a cell for each run. The outcome first, then what the
 /// supervisor did.
 pub(super) fn rows(runs: &[&PolicyRun]) -> Vec<(String, Vec<String>)> {
     let mut rows = Vec::new();
@@ -270,7 +270,7 @@ fn run_json(run: &PolicyRun) -> serde_json::Value {
     figures
 }
 
-fn told_of_plane(plane: &PlaneScene) -> serde_json::Map<String, serde_json::Value> {
+fn overrides_of(plane: &PlaneScene) -> serde_json::Map<String, serde_json::Value> {
     named(&plane.overrides)
         .map(|(name, value)| (name.to_owned(), value.into()))
         .collect()
@@ -318,7 +318,7 @@ pub fn json(scene: &Scene, results: &Results) -> serde_json::Value {
         json!({
             "name": plane.name,
             "whirl_speed_m_s": plane.whirl_speed_m_s,
-            "supervisor_told": told_of_plane(plane),
+            "supervisor_told": overrides_of(plane),
         })
     });
     json!({

@@ -86,7 +86,7 @@ impl Tone {
     }
 
     /// Words in its colour, where there are colours.
-    pub fn said(self, words: &str) -> String {
+    pub fn paint(self, words: &str) -> String {
         let style = self.style();
         match colours() {
             true => format!("{style}{words}{style:#}"),
@@ -118,7 +118,7 @@ mod tests {
     /// Without a word from the command line there are no colours: in tests, in files, in pipes.
     #[test]
     fn colours_are_asked_for() {
-        assert_eq!(Tone::Bad.said("whirl"), "whirl");
+        assert_eq!(Tone::Bad.paint("whirl"), "whirl");
         assert_eq!(
             coloured(&Tone::Bad.marked("whirl")),
             "\u{1b}[1m\u{1b}[31mwhirl\u{1b}[0m"

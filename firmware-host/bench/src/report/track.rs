@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use plant_model::machine::params::MachineParams;
-use plant_model::{Mode, V2};
+use plant_model::{ContactMode, V2};
 use plotters::style::RGBColor;
 
 use crate::record::ticks::{Tick, Ticks, Units};
@@ -18,12 +18,12 @@ use crate::run::trace::TraceRow;
 use crate::run::verdict::PolicyRun;
 
 /// Modes of the plant with their colours, in the order of [`Track::rotor`].
-pub(super) const ROTOR_MODES: [(Mode, RGBColor); 5] = [
-    (Mode::Flight, RGBColor(0xd5, 0xde, 0xe8)),
-    (Mode::SlipPositive, TOUCHING),
-    (Mode::SlipNegative, RGBColor(0x2f, 0x80, 0xc9)),
-    (Mode::Roll, RGBColor(0x7a, 0x4f, 0xb5)),
-    (Mode::Seated, RGBColor(0x4a, 0x52, 0x5c)),
+pub(super) const ROTOR_MODES: [(ContactMode, RGBColor); 5] = [
+    (ContactMode::Flight, RGBColor(0xd5, 0xde, 0xe8)),
+    (ContactMode::SlipPositive, TOUCHING),
+    (ContactMode::SlipNegative, RGBColor(0x2f, 0x80, 0xc9)),
+    (ContactMode::Roll, RGBColor(0x7a, 0x4f, 0xb5)),
+    (ContactMode::Seated, RGBColor(0x4a, 0x52, 0x5c)),
 ];
 
 /// Modes of the supervisor with their colours, in the order of [`Track::supervisor`].
@@ -150,12 +150,12 @@ impl Track {
         ];
         limits.extend(scene.force_max_n.map(|cap| ("force cap", cap)));
         let happenings = run.happenings.all.iter().map(|happening| {
-            let said = happening.said;
+            let supervisor = happening.supervisor;
             TrackEvent {
                 t: 1e3 * happening.t_s,
-                mode: said.mode.name(),
-                limits: names(said.limits.iter_names()),
-                events: names(said.events.iter_names()),
+                mode: supervisor.mode.name(),
+                limits: names(supervisor.limits.iter_names()),
+                events: names(supervisor.events.iter_names()),
             }
         });
         let rotor = |row: &TraceRow| {

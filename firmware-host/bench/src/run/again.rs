@@ -27,12 +27,12 @@ pub fn scene_of_event(
     given: &[Setting],
 ) -> Result<Scene, SceneError> {
     let (launch, found) = (&findings.launch, &findings.identified);
-    let told = [
+    let identified = [
         ("friction.coefficient", found.friction_coefficient),
         ("contact.restitution", found.restitution),
         ("contact.clearance_m", found.clearance_m),
     ];
-    for (key, estimate) in told {
+    for (key, estimate) in identified {
         // A scene that says it by other keys keeps what it says.
         if let (Some(estimate), Some(_)) = (estimate, spec.get(key)?) {
             spec.set(key, estimate.value)?;

@@ -38,7 +38,7 @@ pub struct Clairvoyant {
     half_period_s: f64,
 }
 
-/// Restitution of a plant's contact, as the law is told.
+/// Restitution of a plant's contact, as the law is configured.
 pub fn restitution(plant: &PlantParams) -> f64 {
     // The catalogues' contacts are linear; a nonlinear one loses little at low speed.
     plant.contact.law.linear().map_or(1.0, |law| {

@@ -1,11 +1,11 @@
 //! One policy on one scene, as firmware would run it: sample, compute, and a command that takes
 //! effect at the next sample.
 
-mod bench;
+mod sample_hold;
 mod station;
 pub mod stepwise;
 
-use self::bench::Bench;
+use self::sample_hold::ClosedLoop;
 use self::station::Station;
 use crate::device::external::ControllerError;
 use crate::run::controller::{Controller, Referred, controller_beside};
@@ -91,7 +91,7 @@ impl RunError {
 const TRUSTED_TOLERANCES: f64 = 1e3;
 const TRUSTED: (f64, f64) = (1e-6, 1e-3);
 
-/// Steps of the plant for each sample that a run may take, where it is so long that [`Rigour::steps`] is fewer.
+/// Steps of the plant for each sample that a run may take, where it is so long that [`Accuracy::steps`] is fewer.
 const STEPS_PER_SAMPLE: u64 = 8;
 
 /// Most samples of which rows are kept in memory, some 0.3 KB each.
@@ -142,14 +142,14 @@ impl Keep {
 
 /// How much a run may cost, and how finely what is held is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Rigour {
+pub struct Accuracy {
     /// Into so many times as many parts is cut what varies within a control period and is held part by part: loads, ramps.
     pub parts: u32,
     /// Steps of the plant in the whole run, beyond which it ends with [`PlantError::WorkLimit`].
     pub steps: u64,
 }
 
-impl Default for Rigour {
+impl Default for Accuracy {
     fn default() -> Self {
         Self {
             parts: 1,
@@ -174,8 +174,8 @@ pub fn run(
     }
     let task = Task::keeping(keep, kind.name());
     let mut trace = Trace::default();
-    let bench = bench_of_policy(scene, kind, keep.recorders(&mut trace), task)?;
-    let ended = bench.ride(task, on_tick)?;
+    let sim = loop_of_policy(scene, kind, keep.recorders(&mut trace), task)?;
+    let ended = sim.run_to_end(task, on_tick)?;
     of_machine(ended, trace, task)
 }
 
@@ -195,9 +195,9 @@ pub fn run_policy(
     let task = Task::keeping(keep, policy);
     let mut trace = Trace::default();
     let only = Cell::new(Some(controller));
-    let mut bench = bench(scene, (&|_| only.take(), keep.recorders(&mut trace)), task)?;
-    bench.levitated_by(scene.levitation.as_ref(), policy)?;
-    let ended = bench.ride(task, on_tick)?;
+    let mut sim = set_up(scene, (&|_| only.take(), keep.recorders(&mut trace)), task)?;
+    sim.levitated_by(scene.levitation.as_ref(), policy)?;
+    let ended = sim.run_to_end(task, on_tick)?;
     of_machine(ended, trace, task)
 }
 
@@ -233,7 +233,7 @@ impl<'a> Recorders<'a> {
     }
 }
 
-/// What one plane came to, and where its rows are recorded what its supervisor leaves behind.
+/// Outcome of one plane, and where its rows are recorded what its supervisor leaves behind.
 pub type PlaneEnded = (Figures, Option<ReadOut>);
 
 /// Runs one policy to the end of the scene, its rows given to recorders as they come. What comes back is of each plane.
@@ -244,48 +244,48 @@ pub fn record<'a>(
     scene: &'a Scene,
     kind: PolicyKind,
     recorders: Recorders<'a>,
-    rigour: Rigour,
+    accuracy: Accuracy,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<Vec<PlaneEnded>, RunError> {
     let task = Task {
-        rigour,
+        accuracy,
         ..Task::keeping(Keep::Trace, kind.name())
     };
-    bench_of_policy(scene, kind, recorders, task)?.ride(task, on_tick)
+    loop_of_policy(scene, kind, recorders, task)?.run_to_end(task, on_tick)
 }
 
-fn bench_of_policy<'a>(
+fn loop_of_policy<'a>(
     scene: &'a Scene,
     kind: PolicyKind,
     recorders: Recorders<'a>,
     task: Task,
-) -> Result<Bench<'a>, RunError> {
+) -> Result<ClosedLoop<'a>, RunError> {
     let supervisor = match kind {
         PolicyKind::Supervisor => scene.supervisor(),
         _ => None,
     };
     let whole = supervisor.is_some();
     let controller = |plane: usize| controller_beside(kind, (scene, plane), whole);
-    let mut bench = bench(scene, (&controller, recorders), task)?;
-    bench.levitated_by(scene.levitation.as_ref(), task.policy)?;
-    bench.supervisor = supervisor.zip(scene.supervised());
-    Ok(bench)
+    let mut sim = set_up(scene, (&controller, recorders), task)?;
+    sim.levitated_by(scene.levitation.as_ref(), task.policy)?;
+    sim.supervisor = supervisor.zip(scene.supervised());
+    Ok(sim)
 }
 
 /// Runs a reference on a whole rotor; what comes back is of each plane. [`Keep`] says when it ends; no rows are kept.
 ///
 /// # Errors
 /// As [`run`].
-pub fn refer(
+pub fn run_reference(
     scene: &Scene,
     reference: &WholeReference,
     keep: Keep,
 ) -> Result<Vec<Figures>, RunError> {
     let task = Task::keeping(keep, "clairvoyant");
     let controller = |_: usize| -> Option<Box<dyn Controller>> { Some(Box::new(Referred)) };
-    let mut bench = bench(scene, (&controller, Recorders::default()), task)?;
-    bench.reference = Some(reference);
-    let ended = bench.ride(task, &mut |_| {})?;
+    let mut sim = set_up(scene, (&controller, Recorders::default()), task)?;
+    sim.reference = Some(reference);
+    let ended = sim.run_to_end(task, &mut |_| {})?;
     Ok(ended.into_iter().map(|(figures, _)| figures).collect())
 }
 
@@ -293,16 +293,16 @@ pub fn refer(
 type ControllerOf<'f> = &'f dyn Fn(usize) -> Option<Box<dyn Controller>>;
 
 /// A scene in the loop, nobody holding it as a whole.
-fn bench<'a>(
+fn set_up<'a>(
     scene: &'a Scene,
     (controller_of, recorders): (ControllerOf<'_>, Recorders<'a>),
     task: Task,
-) -> Result<Bench<'a>, RunError> {
+) -> Result<ClosedLoop<'a>, RunError> {
     let options = Options {
         rtol: scene.rtol,
         method: scene.method,
         // A long run takes a step for each sample at least.
-        steps: (task.rigour.steps).max(STEPS_PER_SAMPLE * scene.samples().count()),
+        steps: (task.accuracy.steps).max(STEPS_PER_SAMPLE * scene.samples().count()),
         ..Options::default()
     };
     let rig = Rig::new(scene, options)?;
@@ -314,9 +314,9 @@ fn bench<'a>(
         })?;
         stations.push(Station::new(scene, plane, controller, of_planes.next()));
     }
-    let mut bench = Bench::new(scene, rig, stations);
-    bench.axis = recorders.axis;
-    Ok(bench)
+    let mut sim = ClosedLoop::new(scene, rig, stations);
+    sim.axis = recorders.axis;
+    Ok(sim)
 }
 
 /// A run as it is asked for.
@@ -324,7 +324,7 @@ fn bench<'a>(
 struct Task {
     policy: &'static str,
     to_decision: bool,
-    rigour: Rigour,
+    accuracy: Accuracy,
 }
 
 impl Task {
@@ -332,7 +332,7 @@ impl Task {
         Self {
             policy,
             to_decision: keep.to_decision(),
-            rigour: Rigour::default(),
+            accuracy: Accuracy::default(),
         }
     }
 }

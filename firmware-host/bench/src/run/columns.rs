@@ -46,7 +46,7 @@ impl Kind {
 }
 
 /// What is written in columns: one, or several of what has parts.
-pub(crate) trait InColumns {
+pub(crate) trait Columnar {
     /// Its columns, under a name.
     fn columns(name: &str, into: &mut Vec<Column>);
     /// The cells of one, or empty ones.
@@ -64,7 +64,7 @@ pub(crate) fn below(name: &str, part: &str) -> String {
 /// Types of one column.
 macro_rules! one_column {
     ($($type:ty => $kind:ident, $cell:expr;)*) => {$(
-        impl InColumns for $type {
+        impl Columnar for $type {
             fn columns(name: &str, into: &mut Vec<Column>) {
                 into.push(Column { name: name.to_owned(), kind: Kind::$kind });
             }
@@ -85,7 +85,7 @@ one_column! {
     Outcome => Text, |outcome| outcome.name().to_owned();
 }
 
-impl<T: InColumns> InColumns for Option<T> {
+impl<T: Columnar> Columnar for Option<T> {
     fn columns(name: &str, into: &mut Vec<Column>) {
         T::columns(name, into);
     }
@@ -96,14 +96,14 @@ impl<T: InColumns> InColumns for Option<T> {
 }
 
 /// Columns of a field, whose type its reader says.
-pub(crate) fn columns_of<S, T: InColumns>(_: fn(&S) -> &T, name: &str, into: &mut Vec<Column>) {
+pub(crate) fn columns_of<S, T: Columnar>(_: fn(&S) -> &T, name: &str, into: &mut Vec<Column>) {
     T::columns(name, into);
 }
 
 /// A struct in columns, a name a field; a `..` before one says that its parts stand beside the others. None can be left out.
-macro_rules! in_columns {
+macro_rules! columnar {
     ($type:ident { $($field:ident),* $(; .. $flat:ident)? }) => {
-        impl InColumns for $type {
+        impl Columnar for $type {
             fn columns(name: &str, into: &mut Vec<Column>) {
                 $(columns_of(|s: &Self| &s.$field, &below(name, stringify!($field)), into);)*
                 $(columns_of(|s: &Self| &s.$flat, name, into);)?
@@ -114,10 +114,10 @@ macro_rules! in_columns {
                     let Self { $($field: _,)* $($flat: _)? } = s;
                 };
                 this.into_iter().for_each(all);
-                $(InColumns::cells(this.map(|s| &s.$field), into);)*
-                $(InColumns::cells(this.map(|s| &s.$flat), into);)?
+                $(Columnar::cells(this.map(|s| &s.$field), into);)*
+                $(Columnar::cells(this.map(|s| &s.$flat), into);)?
             }
         }
     };
 }
-pub(crate) use in_columns;
+pub(crate) use columnar;

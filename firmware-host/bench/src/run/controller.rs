@@ -3,7 +3,7 @@
 use crate::device::actuator::limited_n;
 use crate::device::levitation::{Levitation, TrueLevitation, VelocityFilter};
 use crate::device::sensor::Reading;
-use crate::run::trace::{ReadOut, Said};
+use crate::run::trace::{ReadOut, SupervisorTrace};
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
 use plant_model::{Snapshot, V2};
@@ -16,7 +16,7 @@ pub trait Controller: core::fmt::Debug {
     /// The force that answers a sample, from what firmware has seen; a reference may look at the truth.
     fn command(&mut self, seen: &Seen, truth: &Snapshot) -> Force;
 
-    /// What the supervisor of a whole rotor is to be told of this plane; its answer comes by [`Self::answered`] before
+    /// What the supervisor of a whole rotor is to be given of this plane; its answer comes by [`Self::answered`] before
     /// [`Self::command`]. `None` of who has nobody to ask.
     fn ask(&mut self, _seen: &Seen) -> Option<Sample> {
         None
@@ -42,8 +42,8 @@ pub trait Controller: core::fmt::Debug {
         IntegratorHint::Run
     }
 
-    /// What a supervisor in it said to the last sample.
-    fn said(&self) -> Option<Said> {
+    /// Answer of a supervisor in it to the last sample.
+    fn supervisor_trace(&self) -> Option<SupervisorTrace> {
         None
     }
 
@@ -328,9 +328,9 @@ struct Supervised {
     levitation_n: [f32; 2],
     /// What of it the supervisor had asked for \[N\].
     stimulus_n: [f32; 2],
-    /// What it told the controller's integrator.
+    /// Its hint to the controller's integrator.
     hint: IntegratorHint,
-    said: Option<Said>,
+    trace: Option<SupervisorTrace>,
 }
 
 impl Supervised {
@@ -343,7 +343,7 @@ impl Supervised {
             levitation_n: [0.0; 2],
             stimulus_n: [0.0; 2],
             hint: IntegratorHint::Run,
-            said: None,
+            trace: None,
         }
     }
 }
@@ -397,9 +397,9 @@ impl Controller for Supervised {
         };
         self.last = command;
         self.hint = command.integrator;
-        self.said = Some(Said {
+        self.trace = Some(SupervisorTrace {
             stimulus_n: self.stimulus_n,
-            ..Said::new(&command, self.levitation_n)
+            ..SupervisorTrace::new(&command, self.levitation_n)
         });
         let [x, y] = command.force_n;
         Force::Computed(V2::new(f64::from(x), f64::from(y)))
@@ -413,8 +413,8 @@ impl Controller for Supervised {
         self.hint
     }
 
-    fn said(&self) -> Option<Said> {
-        self.said
+    fn supervisor_trace(&self) -> Option<SupervisorTrace> {
+        self.trace
     }
 
     fn read_out(&self) -> Option<ReadOut> {

@@ -1,7 +1,7 @@
 //! The figures of a run, a row each: its key in JSON and in code, where it comes from, how tables head it and show it.
 //! A new figure is a new row here; verdict, JSON, terminal, report and studies take it from there.
 
-use crate::run::columns::{Cell, Column, InColumns, below, columns_of, in_columns};
+use crate::run::columns::{Cell, Column, Columnar, below, columnar, columns_of};
 use crate::run::judge::Judge;
 use crate::run::outcome::Outcome;
 use crate::run::rig::Rig;
@@ -23,7 +23,7 @@ pub enum Digits {
 
 /// In which tables a figure stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum TableLevel {
     /// Also in those that have room for few.
     Everywhere,
     /// In those of all figures.
@@ -55,7 +55,7 @@ pub struct Figure<T> {
     /// With how many digits.
     pub digits: Digits,
     /// In which tables.
-    pub place: Place,
+    pub place: TableLevel,
     /// Reads it.
     pub value: fn(&T) -> Value,
 }
@@ -88,15 +88,15 @@ macro_rules! figures {
             }
         }
 
-        in_columns!($name { $($key),* });
+        columnar!($name { $($key),* });
     };
 }
 
 use Digits::{Fixed, Power, Significant};
-use Place::{Everywhere, Full};
+use TableLevel::{Everywhere, Full};
 
 figures! {
-    /// What a run came to, in SI units. The same scene gives the same, on every machine.
+    /// Outcome of a run, in SI units. The same scene gives the same, on every machine.
     pub struct Figures from Ended<'_>;
 
     /// How it ended.
@@ -176,7 +176,7 @@ pub struct BearingFigures {
     pub clearance_m: f64,
 }
 
-in_columns!(BearingFigures {
+columnar!(BearingFigures {
     heat_j,
     temperature_rise_k,
     clearance_m

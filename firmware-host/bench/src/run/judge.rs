@@ -1,4 +1,4 @@
-//! Watches a run and says what it came to.
+//! Watches a run and says its outcome.
 
 use crate::device::loads::Disturbance;
 use crate::device::sensor_fault::{ROUND_OFF_PERIODS, seen_until_s};

@@ -27,7 +27,7 @@ pub struct InLog {
 
 /// What a log is, and what of it the supervisor had.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LogTold {
+pub struct LogSummary {
     pub rows: usize,
     pub rate_hz: f64,
     pub from_s: f64,
@@ -45,7 +45,7 @@ pub struct LogTold {
     pub events: Vec<InLog>,
 }
 
-impl LogTold {
+impl LogSummary {
     /// In words: what it is, what it lacks, and when its events begin.
     pub fn sentences(&self) -> String {
         let mut out = format!(
@@ -101,7 +101,7 @@ impl LogTold {
 
 /// A log that was watched.
 pub struct Watched {
-    pub told: LogTold,
+    pub summary: LogSummary,
     /// Flight records of its events, one after the other.
     pub records: Vec<u8>,
 }
@@ -174,7 +174,7 @@ impl Watcher {
     }
 
     /// Takes what has frozen.
-    fn take(&mut self, stamp: &Stamp, into: &mut Vec<u8>) {
+    fn drain(&mut self, stamp: &Stamp, into: &mut Vec<u8>) {
         let mut write = |record: &Record<'_, f32, RECORD>| into.extend(written(record, stamp));
         match self {
             Self::Plane(plane) => {
@@ -204,10 +204,10 @@ pub fn watch(spec: &mut Spec, path: &Path, renamed: &[Renamed]) -> Result<Watche
     let log = LogFile::of_ticks(path, renamed)?;
     let (period_s, ticks) = log.ticks(TIME)?;
     let rate_hz = 1.0 / period_s;
-    let told_hz = spec
+    let hz = spec
         .get("run.sample_rate_hz")?
         .and_then(toml::Value::as_float);
-    if told_hz.is_none_or(|told_hz| (told_hz / rate_hz - 1.0).abs() > SAME_RATE) {
+    if hz.is_none_or(|hz| (hz / rate_hz - 1.0).abs() > SAME_RATE) {
         spec.set("run.sample_rate_hz", rate_hz)?;
     }
     // A row has readings of both planes.
@@ -277,7 +277,7 @@ fn watched(
             _ => {}
         }
         engaged = now;
-        watcher.take(&stamp(times[row] - times[0], *sequence), &mut records);
+        watcher.drain(&stamp(times[row] - times[0], *sequence), &mut records);
     }
     // A record that is still open goes on for as long as it must, with a bearing that is off and nothing read.
     let (end_s, taken) = (period_s * ticks.len() as f64, records.len());
@@ -289,7 +289,7 @@ fn watched(
         }
         watcher.tick(&last);
         let sequence = last.first().map_or(0, |sample| sample.sequence);
-        watcher.take(&stamp(end_s, sequence), &mut records);
+        watcher.drain(&stamp(end_s, sequence), &mut records);
         if records.len() > taken {
             break;
         }
@@ -300,7 +300,7 @@ fn watched(
         largest_m.map(|r| r / scene.clearance_m(*plane))
     });
     Ok(Watched {
-        told: LogTold {
+        summary: LogSummary {
             rows: ticks.len(),
             rate_hz: 1.0 / period_s,
             from_s: times[0],

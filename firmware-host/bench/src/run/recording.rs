@@ -1,7 +1,7 @@
 //! A policy's run as `run` wants it: its rows written while it goes on, and kept as far as a report needs them.
 
 use crate::device::whole_levitation::WholeLevitationParams;
-use crate::run::closed_loop::{Recorders, Rigour, RunError, fits_in_memory, record};
+use crate::run::closed_loop::{Accuracy, Recorders, RunError, fits_in_memory, record};
 use crate::run::figures::Figures;
 use crate::run::overview::{AxisTrack, Overview};
 use crate::run::supervision::{Happenings, SupervisionCount};
@@ -119,7 +119,7 @@ pub fn recorded<W: Write + Send>(
             false => None,
         },
     };
-    let ended = record(scene, kind, recorders, Rigour::default(), on_tick)?;
+    let ended = record(scene, kind, recorders, Accuracy::default(), on_tick)?;
     let writing: Duration = recordings.iter().map(Recording::writing).sum();
     let writing = writing
         + axis
@@ -195,6 +195,6 @@ fn warm_up(scene: &Scene, kind: PolicyKind) {
         duration_s,
         ..scene.clone()
     };
-    let (unheard, rigour) = (Recorders::default(), Rigour::default());
-    let _again = record(&brief, kind, unheard, rigour, &mut |_| {});
+    let (unheard, accuracy) = (Recorders::default(), Accuracy::default());
+    let _again = record(&brief, kind, unheard, accuracy, &mut |_| {});
 }

@@ -1,11 +1,11 @@
 //! What the supervisor did in a run, in figures.
 
-use crate::run::columns::{Cell, Column, InColumns, below, columns_of, in_columns};
-use crate::run::trace::{ReadOut, Recorder, Said, Trace, TraceRow};
+use crate::run::columns::{Cell, Column, Columnar, below, columnar, columns_of};
+use crate::run::trace::{ReadOut, Recorder, SupervisorTrace, Trace, TraceRow};
 use serde::Serialize;
 use supervisor::{Events, Mode};
 
-/// What the supervisor did, from what it said at every sample.
+/// What the supervisor did, from its answers to every sample.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Supervision {
     /// Times that it took over from the levitation controller.
@@ -43,17 +43,17 @@ pub struct Account {
     pub severity_index: f64,
     /// Whether it asks for coasting down at the end.
     pub coast_down: bool,
-    /// What the check of its configuration came to.
+    /// Outcome of the check of its configuration.
     pub checked: &'static str,
     /// Checksum of all bytes of the flight record, where one was frozen.
     pub flight_record_crc: Option<u32>,
 }
 
-in_columns!(Supervision {
+columnar!(Supervision {
     engagements, first_engaged_s, engaged_s, longest_engagement_s, handed_back, sensor_faults, expected_severity_max;
     .. account
 });
-in_columns!(Account {
+columnar!(Account {
     landings,
     nuisance_engagements,
     impact_speed_max_m_s,
@@ -83,27 +83,27 @@ pub struct SupervisionCount {
 
 impl Recorder for SupervisionCount {
     fn row(&mut self, row: &TraceRow) {
-        let Some((t_s, said)) = told(row).filter(|_| !row.mode_change) else {
+        let Some((t_s, supervisor)) = supervisor_row(row).filter(|_| !row.mode_change) else {
             return;
         };
-        if let Some((before_s, mode)) = self.last.replace((t_s, said.mode))
+        if let Some((before_s, mode)) = self.last.replace((t_s, supervisor.mode))
             && mode.is_engaged()
         {
             self.engaged_s += t_s - before_s;
         }
         let began_s = *self.since_s.get_or_insert(t_s);
         self.longest_engagement_s = self.longest_engagement_s.max(t_s - began_s);
-        if !said.mode.is_engaged() {
+        if !supervisor.mode.is_engaged() {
             self.since_s = None;
         }
-        let count = |event: Events| u64::from(said.events.contains(event));
+        let count = |event: Events| u64::from(supervisor.events.contains(event));
         self.engagements += count(Events::ENGAGED);
         self.handed_back += count(Events::HANDED_BACK);
         self.sensor_faults += count(Events::SENSOR_FAULT);
-        if said.events.contains(Events::ENGAGED) {
+        if supervisor.events.contains(Events::ENGAGED) {
             self.first_engaged_s.get_or_insert(t_s);
         }
-        self.expected_severity_max = self.expected_severity_max.max(said.severity);
+        self.expected_severity_max = self.expected_severity_max.max(supervisor.severity);
     }
 }
 
@@ -160,8 +160,8 @@ fn widened(x: f32) -> f64 {
 pub struct Happening {
     /// When \[s\].
     pub t_s: f64,
-    /// What it said.
-    pub said: Said,
+    /// The supervisor's answer.
+    pub supervisor: SupervisorTrace,
     /// Touches since the one before, this sample not counted, that changed nothing.
     pub touches_before: u64,
 }
@@ -190,39 +190,39 @@ impl Default for Happenings {
     }
 }
 
-/// Touching and leaving: too many to be told one by one.
+/// Touching and leaving: too many to be listed one by one.
 const EVERYDAY: Events = Events::TOUCHED.union(Events::LIFTED_OFF);
 
 impl Happenings {
-    /// So many are told; what comes after them is in the trace.
+    /// So many are listed; what comes after them is in the trace.
     pub const MOST: usize = 100;
 }
 
 impl Recorder for Happenings {
     fn row(&mut self, row: &TraceRow) {
-        let Some((t_s, said)) = told(row) else {
+        let Some((t_s, supervisor)) = supervisor_row(row) else {
             return;
         };
-        let other = !(said.events - EVERYDAY).is_empty();
-        let changed = std::mem::replace(&mut self.mode, said.mode) != said.mode;
+        let other = !(supervisor.events - EVERYDAY).is_empty();
+        let changed = std::mem::replace(&mut self.mode, supervisor.mode) != supervisor.mode;
         if other || changed {
             let touches_before = std::mem::take(&mut self.touches_after);
             let happening = Happening {
                 t_s,
-                said,
+                supervisor,
                 touches_before,
             };
             match self.all.len() < Self::MOST {
                 true => self.all.push(happening),
                 false => self.more += 1,
             }
-        } else if said.events.contains(Events::TOUCHED) {
+        } else if supervisor.events.contains(Events::TOUCHED) {
             self.touches_after += 1;
         }
     }
 }
 
-fn told(row: &TraceRow) -> Option<(f64, Said)> {
+fn supervisor_row(row: &TraceRow) -> Option<(f64, SupervisorTrace)> {
     Some((row.plant.t_s, row.supervisor?))
 }
 
@@ -239,7 +239,7 @@ mod tests {
 
     fn row(tick: usize, mode: Mode, events: Events) -> TraceRow {
         TraceRow {
-            supervisor: Some(Said {
+            supervisor: Some(SupervisorTrace {
                 mode,
                 limits: Limits::empty(),
                 events,
@@ -251,8 +251,8 @@ mod tests {
         }
     }
 
-    fn trace(said: &[(Mode, Events)]) -> Trace {
-        let rows = said.iter().enumerate();
+    fn trace(answers: &[(Mode, Events)]) -> Trace {
+        let rows = answers.iter().enumerate();
         Trace {
             rows: rows
                 .map(|(tick, (mode, events))| row(tick, *mode, *events))
@@ -277,10 +277,10 @@ mod tests {
         ]);
         let mut happenings = Happenings::default();
         trace.rows.iter().for_each(|row| happenings.row(row));
-        let told: Vec<(f64, u64)> = (happenings.all.iter())
+        let listed: Vec<(f64, u64)> = (happenings.all.iter())
             .map(|h| (h.t_s, h.touches_before))
             .collect();
-        assert_eq!(told, [(1.0, 0), (5.0, 2), (6.0, 0), (7.0, 0)]);
+        assert_eq!(listed, [(1.0, 0), (5.0, 2), (6.0, 0), (7.0, 0)]);
         assert_eq!(happenings.touches_after, 1);
     }
 

@@ -13,15 +13,15 @@ pub struct TraceRow {
     pub measured_m: V2,
     /// Force commanded by the policy, in effect at this instant \[N\].
     pub commanded_n: V2,
-    /// What the supervisor said to the last sample, where one runs.
-    pub supervisor: Option<Said>,
+    /// The supervisor's answer to the last sample, where one runs.
+    pub supervisor: Option<SupervisorTrace>,
     /// Whether the row stands at a change of mode between two samples.
     pub mode_change: bool,
 }
 
-/// What a supervisor says beside its force.
+/// What a supervisor answers beside its force.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Said {
+pub struct SupervisorTrace {
     /// Mode after the tick.
     pub mode: supervisor::Mode,
     /// What bound the command.
@@ -36,7 +36,7 @@ pub struct Said {
     pub stimulus_n: [f32; 2],
 }
 
-impl Said {
+impl SupervisorTrace {
     /// Of the command to a sample.
     pub fn new(command: &Command, levitation_n: [f32; 2]) -> Self {
         Self {
@@ -93,6 +93,6 @@ impl Recorder for Trace {
 impl TraceRow {
     /// Mode of the supervisor, where one runs.
     pub fn supervisor_mode(&self) -> Option<supervisor::Mode> {
-        self.supervisor.map(|said| said.mode)
+        self.supervisor.map(|trace| trace.mode)
     }
 }

@@ -2,7 +2,7 @@
 //! whatever else shows rows.
 
 use crate::run::supervision::names;
-use crate::run::trace::{AxisRow, Said, TraceRow};
+use crate::run::trace::{AxisRow, SupervisorTrace, TraceRow};
 
 /// A column of numbers.
 pub struct Number<R> {
@@ -260,31 +260,31 @@ const NUMBERS: &[Plain<TraceRow>] = &[
         "levitation_x_n",
         "N",
         "what the levitation controller asks for",
-        |r| said(r, |s| s.levitation_n[0]),
+        |r| trace(r, |s| s.levitation_n[0]),
     ),
     (
         "levitation_y_n",
         "N",
         "what the levitation controller asks for",
-        |r| said(r, |s| s.levitation_n[1]),
+        |r| trace(r, |s| s.levitation_n[1]),
     ),
     (
         "stimulus_x_n",
         "N",
         "what of it the supervisor asks for, to check its configuration",
-        |r| said(r, |s| s.stimulus_n[0]),
+        |r| trace(r, |s| s.stimulus_n[0]),
     ),
     (
         "stimulus_y_n",
         "N",
         "what of it the supervisor asks for, to check its configuration",
-        |r| said(r, |s| s.stimulus_n[1]),
+        |r| trace(r, |s| s.stimulus_n[1]),
     ),
     (
         "supervisor_severity",
         "1",
         "severity of what is coming, as a share of what the cap can stop",
-        |r| said(r, |s| s.severity),
+        |r| trace(r, |s| s.severity),
     ),
 ];
 
@@ -337,7 +337,7 @@ const TEXTS: &[Text<TraceRow>] = &[
     }),
 ];
 
-/// Something that the supervisor said; 0 where there is none.
-fn said(row: &TraceRow, what: fn(&Said) -> f32) -> f64 {
-    row.supervisor.map_or(0.0, |said| f64::from(what(&said)))
+/// A number of the supervisor's answer; 0 where there is none.
+fn trace(row: &TraceRow, what: fn(&SupervisorTrace) -> f32) -> f64 {
+    row.supervisor.map_or(0.0, |trace| f64::from(what(&trace)))
 }

@@ -186,10 +186,10 @@ mod tests {
             }
         }
         let begun = TraceFile::new(Full, Columns::of_plane());
-        let told = begun.and_then(|mut file| {
+        let done = begun.and_then(|mut file| {
             (0..GROUP_ROWS).for_each(|i| file.row(&fixture::row(i as f64, false)));
             file.end()
         });
-        assert_eq!(reason(told.unwrap_err()).kind(), io::ErrorKind::StorageFull);
+        assert_eq!(reason(done.unwrap_err()).kind(), io::ErrorKind::StorageFull);
     }
 }

@@ -1,4 +1,4 @@
-//! What a run came to: figures, how long it took, and what stands beside them.
+//! Outcome of a run: figures, how long it took, and what stands beside them.
 
 use crate::run::figures::{Figures, Timing, Took};
 use crate::run::overview::AxisTrack;
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Figures of one policy on one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
-    /// What it came to.
+    /// Its outcome.
     #[serde(flatten)]
     pub figures: Figures,
     /// How long it took.
@@ -40,7 +40,7 @@ impl Verdict {
 pub struct PolicyRun {
     /// Name of the policy, e.g. `supervisor`.
     pub name: String,
-    /// What it came to.
+    /// Its outcome.
     pub verdict: Verdict,
     /// What running it again with other means says, where that was asked for.
     pub verification: Option<Result<Verification, String>>,
@@ -62,7 +62,7 @@ impl PolicyRun {
 /// One policy's run of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MachineRun {
-    /// What it came to as a whole; its rows are those of the planes.
+    /// Its outcome as a whole; its rows are those of the planes.
     pub whole: PolicyRun,
     /// Its planes, each under the name of the policy.
     pub planes: Vec<PolicyRun>,
@@ -79,7 +79,7 @@ pub struct FailedRun {
     pub error: String,
 }
 
-/// What came of a scene, policy by policy.
+/// Outcome of a scene, policy by policy.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Results {
     /// Runs as a whole, in the scene's order.

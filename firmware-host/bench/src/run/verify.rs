@@ -1,13 +1,13 @@
 //! A run's own estimate of its global error: the closed loop once more at a tighter tolerance, and
 //! once more by another method.
 
-use crate::run::closed_loop::{Recorders, Rigour, RunError, record};
+use crate::run::closed_loop::{Accuracy, Recorders, RunError, record};
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::trace::{Recorder, TraceRow};
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
-use plant_model::{Method, Mode, V2};
+use plant_model::{ContactMode, Method, V2};
 use serde::Serialize;
 
 /// Number of checks of a run.
@@ -93,7 +93,7 @@ pub struct Track {
     /// Positions at control samples, which stand at the same times in every run of a scene \[m\].
     positions_m: Vec<V2>,
     /// Modes in the order in which they were entered.
-    modes: Vec<Mode>,
+    modes: Vec<ContactMode>,
 }
 
 impl Recorder for Track {
@@ -161,8 +161,8 @@ impl<'a> Comparison<'a> {
     }
 }
 
-fn rigour(scene: &Scene) -> Rigour {
-    Rigour {
+fn accuracy(scene: &Scene) -> Accuracy {
+    Accuracy {
         parts: FINER_PARTS,
         steps: STEPS + STEPS_PER_SAMPLE * scene.samples().count(),
     }
@@ -191,7 +191,7 @@ pub fn check(
         .map(|(plane, run)| Comparison::new(run, scene.clearance_m(plane)))
         .collect();
     let recorders = Recorders::of_planes(&mut comparisons);
-    let ended = record(scene, kind, recorders, rigour(scene), on_tick);
+    let ended = record(scene, kind, recorders, accuracy(scene), on_tick);
     let ended = ended.map_err(untrusted(scene))?;
     Ok((comparisons.into_iter().zip(&ended))
         .map(|(comparison, (figures, _))| comparison.ended(figures, scene.rtol))

@@ -161,7 +161,7 @@ impl WholeReference {
 mod tests {
     use super::*;
     use crate::report::fixture;
-    use crate::run::closed_loop::{Keep, refer};
+    use crate::run::closed_loop::{Keep, run_reference};
 
     const P6: &str = include_str!("../../scenes/rotors/p6.toml");
 
@@ -212,7 +212,7 @@ mod tests {
     fn brings_a_struck_rotor_back() {
         let mut scene = Scene::parse("p6.toml", P6).unwrap();
         scene.start.tilt_rate_rad_s = V2::new(3.0, 0.0);
-        let run = |reference: &WholeReference, keep| refer(&scene, reference, keep).unwrap();
+        let run = |of: &WholeReference, keep| run_reference(&scene, of, keep).unwrap();
         let reference = WholeReference::law(law(0.0), &scene).unwrap();
         let full = run(&reference, Keep::Verdict);
         assert!(full.iter().all(|f| f.recovered) && full.iter().any(|f| f.impacts > 0));

@@ -18,7 +18,7 @@ pub enum SceneError {
     Read {
         /// The path given.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: std::io::Error,
     },
     /// The file is no text that TOML may be.

@@ -31,7 +31,7 @@ pub(crate) fn key(found: &str, here: &'static [Key]) -> Option<String> {
         .or_else(elsewhere)
 }
 
-/// How magnets are told in newtons per ampere and amperes, and what to do with that.
+/// How magnets are given in newtons per ampere and amperes, and what to do with that.
 const OF_CURRENTS: &[&str] = &["ki_", "k_i", "ks_", "k_s", "current", "i_max", "imax"];
 const BY_CURRENT: &str = "magnets are told by force: force_max_n is k_i times the largest current, negative_stiffness_n_m is k_s; \
                           or give [magnet.poles] with currents and air gap";

@@ -36,9 +36,9 @@ const GIVEN: [&str; 9] = [
     "contact_stiffness_n_m",
 ];
 
-/// What a supervisor is told of the plant.
+/// What of the plant is configured for a supervisor.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Told<'a> {
+pub(crate) struct Setup<'a> {
     /// The plant's own data.
     pub(crate) nominal: &'a Nominal,
     /// What the scene puts in their place.
@@ -48,8 +48,8 @@ pub(crate) struct Told<'a> {
 }
 
 /// Warnings with file and line.
-pub(crate) fn warnings(spec: &PlaneSpec, plant: &PlantParams, told: Told<'_>) -> Vec<String> {
-    let (file, text, nominal) = (&spec.tables, &spec.text, told.nominal);
+pub(crate) fn warnings(spec: &PlaneSpec, plant: &PlantParams, setup: Setup<'_>) -> Vec<String> {
+    let (file, text, nominal) = (&spec.tables, &spec.text, setup.nominal);
     let warning = |key: &str, message| text.warning(key, message);
     let clearance_m = plant.contact.clearance_m;
     let mut warnings = Vec::new();
@@ -90,14 +90,14 @@ pub(crate) fn warnings(spec: &PlaneSpec, plant: &PlantParams, told: Told<'_>) ->
         );
         warnings.push(warning(key, message));
     }
-    if !told.overrides.is_empty() {
+    if !setup.overrides.is_empty() {
         warnings.extend(of_another_machine(
             text,
-            told,
+            setup,
             left_by_the_weight(file, nominal),
         ));
     }
-    let Some(config) = told.config else {
+    let Some(config) = setup.config else {
         return warnings;
     };
     let rate = file.run.sample_rate_hz;
@@ -281,8 +281,8 @@ fn left_by_the_weight(file: &SceneTables, nominal: &Nominal) -> Option<f64> {
 }
 
 /// What the scene tells the supervisor otherwise than it is.
-fn of_another_machine(text: &SceneText, told: Told<'_>, left_n: Option<f64>) -> Vec<String> {
-    let suggested = suggested(told.nominal).config.values();
+fn of_another_machine(text: &SceneText, setup: Setup<'_>, left_n: Option<f64>) -> Vec<String> {
+    let suggested = suggested(setup.nominal).config.values();
     let warning = |&(index, given): &Override| {
         let (name, value) = (PARAMETERS[index].name, suggested[index]);
         // The table of `advise` holds every bit; what is rounded by hand is meant.
@@ -297,5 +297,5 @@ fn of_another_machine(text: &SceneText, told: Told<'_>, left_n: Option<f64>) -> 
             text.warning(&key, message)
         })
     };
-    (told.overrides.iter()).filter_map(warning).collect()
+    (setup.overrides.iter()).filter_map(warning).collect()
 }

@@ -61,7 +61,7 @@ impl Spec {
             ..written.unwrap_or_default()
         });
         self.caller = Some(caller);
-        self.put(tables);
+        self.set_tables(tables);
         Ok(())
     }
 }

@@ -7,7 +7,7 @@ use crate::scene::diagnostic::SceneError;
 use crate::scene::events::events;
 use crate::scene::guess;
 use crate::scene::limits::{damping_n_s_m, whirl_speed_m_s};
-use crate::scene::lint::{Told, unseen, warnings};
+use crate::scene::lint::{Setup, unseen, warnings};
 use crate::scene::nominal::{NominalKeys, config, nominal, overrides};
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::plant::{hardening_key, plant};
@@ -19,7 +19,7 @@ use plant_model::params::{ContactLaw, PlantParams, RotorParams};
 
 /// What a plane is to the rotor that it shares with others.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct OfMachine {
+pub(crate) struct RotorContext {
     /// The rotor as an impact in this plane finds it.
     pub(crate) point: PointMass,
     /// Mass whose weight its magnet carries \[kg\].
@@ -49,7 +49,7 @@ pub(crate) struct Resolved {
 
 impl PlaneSpec {
     /// The plane, every value checked.
-    pub(crate) fn resolve(&self, of: &OfMachine) -> Result<Resolved, SceneError> {
+    pub(crate) fn resolve(&self, of: &RotorContext) -> Result<Resolved, SceneError> {
         let (written, text) = (&self.tables, &self.text);
         let point = RotorParams {
             mass_kg: of.point.mass_kg,
@@ -59,7 +59,7 @@ impl PlaneSpec {
             contact_radius_m: self.contact_radius_m,
         };
         let mut plant = plant(self, point)?;
-        give_way(&mut plant, of.residual_m_n);
+        add_shaft_compliance(&mut plant, of.residual_m_n);
         check_method(self, &plant)?;
         if let Some(m) = &written.magnet
             && m.delay_samples + m.delay_jitter_samples > 7
@@ -94,13 +94,13 @@ impl PlaneSpec {
         let supervisor = acts(PolicyKind::Supervisor)
             .then(|| config(&nominal, &nominal_keys, &overrides, text))
             .transpose()?;
-        let told = Told {
+        let setup = Setup {
             nominal: &nominal,
             overrides: &overrides,
             config: supervisor.as_ref(),
         };
         let warnings = match text.warns {
-            true => [warnings(self, &plant, told), unseen(self)].concat(),
+            true => [warnings(self, &plant, setup), unseen(self)].concat(),
             false => Vec::new(),
         };
         let plane = PlaneScene {
@@ -145,7 +145,7 @@ impl PlaneSpec {
 }
 
 /// A contact in series with a spring: what the shaft bends there in modes that are not kept.
-fn give_way(plant: &mut PlantParams, residual_m_n: f64) {
+fn add_shaft_compliance(plant: &mut PlantParams, residual_m_n: f64) {
     if let ContactLaw::Linear(law) = &mut plant.contact.law {
         let share = 1.0 / (1.0 + law.stiffness_n_m * residual_m_n);
         law.stiffness_n_m *= share;

@@ -10,7 +10,7 @@ use crate::scene::devices::centre_offset_m;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::lint::{of_the_loop, slips};
 use crate::scene::own_controller::own_controller;
-use crate::scene::plane::OfMachine;
+use crate::scene::plane::RotorContext;
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::poles::poles;
 use crate::scene::refused::refused;
@@ -83,7 +83,7 @@ impl Spec {
             let rigid = machine.rotor.rigid();
             let position_m = origin.place_m(plane.position_m);
             let lever = |place_m: f64| rigid.lever(place_m, position_m);
-            let of = OfMachine {
+            let of = RotorContext {
                 point: linear.point_mass(position_m),
                 carried_kg: match own {
                     Some(m) => weights.translation[m] * rigid.mass_kg,
@@ -155,7 +155,7 @@ impl Spec {
             start,
             planes: all.into_iter().map(|resolved| resolved.plane).collect(),
             levitation,
-            told: None,
+            configured_shaft: None,
             warnings,
         };
         (scene.machine_with_loads().validate())

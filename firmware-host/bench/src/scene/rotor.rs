@@ -228,14 +228,14 @@ fn tilts(tables: &SceneTables, planes: &[PlaneSpec]) -> Option<String> {
     let start = &tables.start;
     // A mass has a point, too.
     let of_more = of_numbers(tables).into_iter().skip(1);
-    let mut said = of_more.chain([
+    let mut keys = of_more.chain([
         ("start.tilt_rad", start.tilt_rad.is_some()),
         ("start.tilt_rate_rad_s", start.tilt_rate_rad_s.is_some()),
         ("plane", planes.len() > 1),
     ]);
-    let said = said.find(|(_, said)| *said);
+    let found = keys.find(|(_, given)| *given);
     let off_centre = || places(tables).into_iter().find(|(_, z)| *z != 0.0);
-    (said.map(|(key, _)| key.to_owned())).or_else(|| off_centre().map(|(key, _)| key))
+    (found.map(|(key, _)| key.to_owned())).or_else(|| off_centre().map(|(key, _)| key))
 }
 
 /// Keys of a rotor by numbers.

@@ -147,7 +147,7 @@ pub fn markdown_table() -> String {
         )
     };
     let mut text = format!("### Above all tables\n\n{HEAD}");
-    let mut told = Vec::new();
+    let mut listed = Vec::new();
     for key in KEYS.iter().filter(|key| !is_table(key)) {
         row(key, key.name, key.help, &mut text);
     }
@@ -161,23 +161,23 @@ pub fn markdown_table() -> String {
         let _ = write!(text, "\n### `{heading}`\n\n{need}: {}.\n", key.help);
         if !key.below().is_empty() {
             let _ = write!(text, "\n{HEAD}");
-            rows_below(key, key.name.to_owned(), &mut told, &mut text);
+            rows_below(key, key.name.to_owned(), &mut listed, &mut text);
         }
     }
     text
 }
 
-/// Rows of these keys; `told` are the tables that have theirs.
+/// Rows of these keys; `listed` are the tables that have theirs.
 fn rows(
     keys: &'static [Key],
     table: &str,
-    told: &mut Vec<(&'static [Key], String)>,
+    listed: &mut Vec<(&'static [Key], String)>,
     text: &mut String,
 ) {
     for key in keys {
         let path = joined(table, key.name);
         let (below, mut help) = (key.below(), key.help.to_owned());
-        let as_before = told
+        let as_before = listed
             .iter()
             .find(|(keys, _)| !below.is_empty() && std::ptr::eq(*keys, below));
         if let Some((_, path)) = as_before {
@@ -185,7 +185,7 @@ fn rows(
         }
         row(key, &path, &help, text);
         if as_before.is_none() && !below.is_empty() {
-            rows_below(key, path, told, text);
+            rows_below(key, path, listed, text);
         }
     }
 }
@@ -194,14 +194,14 @@ fn rows(
 fn rows_below(
     key: &'static Key,
     mut path: String,
-    told: &mut Vec<(&'static [Key], String)>,
+    listed: &mut Vec<(&'static [Key], String)>,
     text: &mut String,
 ) {
-    told.push((key.below(), path.clone()));
+    listed.push((key.below(), path.clone()));
     if matches!(key.kind, Kind::Tables(_)) {
         path += "[]";
     }
-    rows(key.below(), &path, told, text);
+    rows(key.below(), &path, listed, text);
 }
 
 fn row(key: &Key, path: &str, help: &str, text: &mut String) {

@@ -157,12 +157,12 @@ impl Spec {
         }
         let tables: SceneTables =
             read::file(values, KEYS).map_err(|refusal| self.text.error_of(refusal, KEYS))?;
-        self.put(tables);
+        self.set_tables(tables);
         Ok(())
     }
 
-    /// Puts other tables in the place of all.
-    pub(crate) fn put(&mut self, tables: SceneTables) {
+    /// Other tables in the place of all.
+    pub(crate) fn set_tables(&mut self, tables: SceneTables) {
         // With the defaults of what is new.
         self.values = values_of(&tables);
         self.tables = tables;

@@ -17,7 +17,7 @@ impl Scene {
         Some(self.supervised()?.map(|plane| &self.planes[plane]))
     }
 
-    /// The rotor as the supervisor is told it: rigid, in two planes that have a magnet each; `None` of another.
+    /// The rotor as the supervisor is configured: rigid, in two planes that have a magnet each; `None` of another.
     pub fn shaft(&self) -> Option<Shaft> {
         let place = |plane: usize| {
             let magnet = self.machine.magnets.get(self.planes[plane].magnet?)?;
@@ -48,8 +48,8 @@ impl Scene {
     ) -> Option<RotorSupervisor<TICKS>> {
         let [first, second] = self.supervised_planes()?;
         let configs = [first.supervisor?, second.supervisor?];
-        let made = match &self.told {
-            Some(told) => RotorSupervisor::new(told, &configs),
+        let made = match &self.configured_shaft {
+            Some(shaft) => RotorSupervisor::new(shaft, &configs),
             None => RotorSupervisor::from_planes(&self.shaft()?, &configs),
         };
         made.ok()

@@ -19,7 +19,7 @@ pub enum SweepError {
         /// Which file.
         what: &'static str,
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: String,
         /// What to do.
         help: &'static str,
@@ -42,7 +42,7 @@ pub enum SweepError {
     Write {
         /// What was to be written.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: String,
     },
 }

@@ -1,7 +1,7 @@
 //! A run's figures as cells of a row.
 
-use crate::run::closed_loop::{PlaneEnded, Recorders, Rigour, RunError, record};
-use crate::run::columns::{Cell, Column, InColumns};
+use crate::run::closed_loop::{Accuracy, PlaneEnded, Recorders, RunError, record};
+use crate::run::columns::{Cell, Column, Columnar};
 use crate::run::figures::Figures;
 use crate::run::supervision::{Supervision, SupervisionCount};
 use crate::scene::policy_kind::PolicyKind;
@@ -36,7 +36,7 @@ pub fn cells(scene: &Scene, kind: PolicyKind) -> Result<Vec<Cell>, RunError> {
         false => Vec::new(),
     };
     let recorders = Recorders::of_planes(&mut counts);
-    let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {})?;
+    let ended = record(scene, kind, recorders, Accuracy::default(), &mut |_| {})?;
     if let [only] = &ended[..] {
         plane_cells(only, counts.first(), &mut cells);
         return Ok(cells);

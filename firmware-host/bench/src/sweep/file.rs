@@ -125,7 +125,7 @@ fn variations(written: &SweepTables, text: &SceneText) -> Result<Vec<Variation>,
         variations.push(Variation {
             key: key.clone(),
             values,
-            said_by: format!("{path}.{name}"),
+            written_at: format!("{path}.{name}"),
         });
     }
     Ok(variations)

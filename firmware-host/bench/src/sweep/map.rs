@@ -7,7 +7,7 @@ use crate::sweep::plan::Plan;
 use crate::sweep::sample::Sample;
 use crate::sweep::values::Values;
 
-/// Values that are told apart by name at most; more are put into equal parts of their range.
+/// Values that are distinguished by name at most; more are put into equal parts of their range.
 const MOST_NAMES: usize = 24;
 /// Parts of a range at most, and runs that each cell should have.
 const MOST_PARTS: usize = 16;
@@ -101,7 +101,7 @@ pub(super) fn maps(plan: &Plan, sample: &Sample, pairs: &[[usize; 2]]) -> Vec<Ou
     maps
 }
 
-/// `None` for more words than can be told apart, and where a key has no value at all.
+/// `None` for more words than can be distinguished, and where a key has no value at all.
 fn axis(plan: &Plan, sample: &Sample, key: usize) -> Option<MapAxis> {
     let (varied, of) = (&plan.file.variations[key], &sample.keys[key]);
     let mut distinct: Vec<f64> = of

@@ -132,7 +132,7 @@ fn bound(summary: &Summary) -> String {
     let lost = "Lost: ended neither recovered nor decayed.";
     let bounds =
         (summary.policies.iter()).filter_map(|policy| Some((policy, policy.lost_at_most?)));
-    let said: Vec<String> = bounds
+    let sentences: Vec<String> = bounds
         .map(|(policy, most)| {
             format!(
                 "Under {} none of {} independent runs was lost: with a confidence of 95 % at most {} of all such runs are (rule of three, 3 over the runs).",
@@ -142,11 +142,11 @@ fn bound(summary: &Summary) -> String {
             )
         })
         .collect();
-    match said.is_empty() {
+    match sentences.is_empty() {
         true => format!(
             "{lost} A bound on the share holds where runs are drawn independently (design monte_carlo), and none is lost or failed: the rule of three."
         ),
-        false => format!("{lost} {}", said.join(" ")),
+        false => format!("{lost} {}", sentences.join(" ")),
     }
 }
 

@@ -38,7 +38,7 @@ pub struct Plan {
 
 /// A run's keys and values, in the order of the sweep file, and its seed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
+pub struct RunPoint {
     /// Values of the keys that vary.
     pub values: Vec<Value>,
     /// `run.seed`.
@@ -170,7 +170,7 @@ impl Plan {
     }
 
     /// What a run draws.
-    pub fn drawn(&self, run: u64) -> Drawn {
+    pub fn point(&self, run: u64) -> RunPoint {
         let point = self.file.points.at(run);
         let shares = point.shares.iter().zip(&self.file.variations);
         let mut seed = point.seed.cast_signed();
@@ -182,7 +182,7 @@ impl Plan {
             }
             value
         });
-        Drawn {
+        RunPoint {
             values: values.collect(),
             seed,
         }
@@ -192,10 +192,10 @@ impl Plan {
     ///
     /// # Errors
     /// [`SceneError`] of values that make no scene.
-    pub fn spec(&self, drawn: &Drawn) -> Result<Spec, SceneError> {
+    pub fn spec(&self, point: &RunPoint) -> Result<Spec, SceneError> {
         let mut spec = self.spec.clone();
-        let varied = self.file.variations.iter().zip(&drawn.values);
-        let mut all = vec![("run.seed", Value::Integer(drawn.seed))];
+        let varied = self.file.variations.iter().zip(&point.values);
+        let mut all = vec![("run.seed", Value::Integer(point.seed))];
         all.extend(varied.map(|(variation, value)| (variation.key.as_str(), value.clone())));
         spec.set_all(&all)?;
         Ok(spec)
@@ -203,16 +203,16 @@ impl Plan {
 
     /// Runs a run under each policy, and adds its rows to others.
     pub fn run(&self, run: u64, rows: &mut Rows) {
-        let drawn = self.drawn(run);
-        let scene = self.spec(&drawn).and_then(|spec| spec.resolve());
+        let point = self.point(run);
+        let scene = self.spec(&point).and_then(|spec| spec.resolve());
         let scene = scene.map_err(|error| in_one_line(&error));
         for kind in &self.policies {
             let mut row = vec![
                 Cell::Whole(Some(run.cast_signed())),
                 Cell::Text(Some(kind.name().to_owned())),
-                Cell::Whole(Some(drawn.seed)),
+                Cell::Whole(Some(point.seed)),
             ];
-            let varied = self.file.variations.iter().zip(&drawn.values);
+            let varied = self.file.variations.iter().zip(&point.values);
             row.extend(varied.map(|(variation, value)| variation.values.cell(value)));
             let ended = match &scene {
                 Ok(scene) => cells(scene, *kind).map_err(|error| error.to_string()),
@@ -262,7 +262,7 @@ fn check(
     let Variation {
         key,
         values,
-        said_by,
+        written_at,
     } = variation;
     spec.get(key)
         .map_err(|error| at(&format!("vary[{index}].key"), error))?;
@@ -278,7 +278,7 @@ fn check(
         _ => vec![values.at(1.0 / 3.0)],
     };
     for value in tried {
-        (spec.clone().set(key, value)).map_err(|error| at(said_by, error))?;
+        (spec.clone().set(key, value)).map_err(|error| at(written_at, error))?;
     }
     Ok(())
 }

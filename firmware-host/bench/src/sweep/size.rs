@@ -133,7 +133,7 @@ fn grid(
                     variation.key
                 );
                 return Err(refused(
-                    &variation.said_by,
+                    &variation.written_at,
                     message,
                     "give values, linspace or logspace, or take another design",
                 ));

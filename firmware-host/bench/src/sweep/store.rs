@@ -78,11 +78,11 @@ impl Manifest {
             );
         }
         if let Some(key) = differing(&self.sweep, &now.sweep) {
-            let said = |of: &Self| of.sweep.get(key).map_or("not given".to_owned(), said);
+            let described = |of: &Self| of.sweep.get(key).map_or("not given".to_owned(), described);
             return Some(format!(
                 "{key} of the sweep file was {}, and is {}",
-                said(self),
-                said(now)
+                described(self),
+                described(now)
             ));
         }
         (self != now).then(|| "has other runs".to_owned())
@@ -90,7 +90,7 @@ impl Manifest {
 }
 
 /// A value of the sweep file, not longer than one reads.
-fn said(value: &serde_json::Value) -> String {
+fn described(value: &serde_json::Value) -> String {
     let text = value.to_string();
     match text.char_indices().nth(300) {
         Some((end, _)) => format!("{}…", text.get(..end).unwrap_or_default()),

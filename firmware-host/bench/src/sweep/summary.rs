@@ -1,7 +1,7 @@
-//! What a sweep came to, read from its results.
+//! Outcome of a sweep, read from its results.
 
 use crate::run::columns::Kind;
-use crate::run::figures::{Figures, Place};
+use crate::run::figures::{Figures, TableLevel};
 use crate::run::outcome::Outcome;
 use crate::scene::policy_kind::PolicyKind;
 use crate::sweep::design::Design;
@@ -16,10 +16,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::File;
 
-/// So many errors are told.
+/// So many errors are listed.
 const ERRORS_TOLD: usize = 3;
 
-/// What a sweep came to.
+/// Outcome of a sweep.
 #[derive(Debug, Clone, Serialize)]
 pub struct Summary {
     /// Title of the scene.
@@ -51,7 +51,7 @@ pub struct Summary {
     pub worst: Vec<WorstRun>,
 }
 
-/// What a policy came to.
+/// Outcome of a policy.
 #[derive(Debug, Clone, Serialize)]
 pub struct PolicySummary {
     /// Its name.
@@ -177,7 +177,7 @@ struct Tally {
 
 /// Keys of the main figures.
 fn main_figures() -> Vec<&'static str> {
-    let main = (Figures::ALL.iter()).filter(|figure| figure.place == Place::Everywhere);
+    let main = (Figures::ALL.iter()).filter(|figure| figure.place == TableLevel::Everywhere);
     main.map(|figure| figure.key)
         .filter(|key| *key != "outcome")
         .collect()

@@ -191,12 +191,12 @@ impl<W: Write + Send> RowsFile<W> {
                 break;
             };
             match cells {
-                Cells::Number(all) => put::<DoubleType, _>(&mut column, all, |x| *x),
-                Cells::Whole(all) => put::<Int64Type, _>(&mut column, all, |x| *x),
-                Cells::Truth(all) => put::<BoolType, _>(&mut column, all, |x| *x),
-                Cells::Text(all) => {
-                    put::<ByteArrayType, _>(&mut column, all, |text| ByteArray::from(text.as_str()))
-                }
+                Cells::Number(all) => write::<DoubleType, _>(&mut column, all, |x| *x),
+                Cells::Whole(all) => write::<Int64Type, _>(&mut column, all, |x| *x),
+                Cells::Truth(all) => write::<BoolType, _>(&mut column, all, |x| *x),
+                Cells::Text(all) => write::<ByteArrayType, _>(&mut column, all, |text| {
+                    ByteArray::from(text.as_str())
+                }),
             }?;
             column.close()?;
         }
@@ -227,7 +227,7 @@ fn field(column: &Column) -> Result<Arc<Type>, ParquetError> {
     Ok(Arc::new(field))
 }
 
-fn put<T: DataType, C>(
+fn write<T: DataType, C>(
     column: &mut SerializedColumnWriter<'_>,
     cells: &[Option<C>],
     value: impl Fn(&C) -> T::T,
@@ -279,12 +279,12 @@ impl RowsReader {
         let read = |column: usize| {
             Ok(match group.get_column_reader(column)? {
                 ColumnReader::DoubleColumnReader(reader) => {
-                    Cells::Number(take(reader, len, |x| x)?)
+                    Cells::Number(read(reader, len, |x| x)?)
                 }
-                ColumnReader::Int64ColumnReader(reader) => Cells::Whole(take(reader, len, |x| x)?),
-                ColumnReader::BoolColumnReader(reader) => Cells::Truth(take(reader, len, |x| x)?),
+                ColumnReader::Int64ColumnReader(reader) => Cells::Whole(read(reader, len, |x| x)?),
+                ColumnReader::BoolColumnReader(reader) => Cells::Truth(read(reader, len, |x| x)?),
                 ColumnReader::ByteArrayColumnReader(reader) => {
-                    Cells::Text(take(reader, len, |bytes| {
+                    Cells::Text(read(reader, len, |bytes| {
                         String::from_utf8_lossy(bytes.data()).into_owned()
                     })?)
                 }
@@ -306,7 +306,7 @@ impl RowsReader {
     }
 }
 
-fn take<T: DataType, C>(
+fn read<T: DataType, C>(
     mut reader: ColumnReaderImpl<T>,
     len: usize,
     cell: impl Fn(T::T) -> C,

@@ -49,8 +49,8 @@ pub struct Variation {
     pub key: String,
     /// What it varies over.
     pub values: Values,
-    /// The key of the sweep file that says so.
-    pub(crate) said_by: String,
+    /// The key of the sweep file that sets it.
+    pub(crate) written_at: String,
 }
 
 /// What is wrong with a table, at which of its keys, and what to do; no key: the table itself.

@@ -37,7 +37,7 @@ pub(crate) fn scene_of(plan: &Plan, run: u64) -> Result<String, SweepError> {
     let mut document: DocumentMut = text
         .parse()
         .map_err(|error: toml_edit::TomlError| refused(error.to_string()))?;
-    let drawn = plan.drawn(run);
+    let point = plan.point(run);
     let policies = plan
         .policies()
         .iter()
@@ -49,22 +49,22 @@ pub(crate) fn scene_of(plan: &Plan, run: u64) -> Result<String, SweepError> {
         .map(|variation| variation.key.as_str());
     let mut set: Vec<(&str, Value)> = vec![
         ("run.policies", Value::Array(policies.collect())),
-        ("run.seed", Value::Integer(drawn.seed)),
+        ("run.seed", Value::Integer(point.seed)),
     ];
-    set.extend(keys.clone().zip(drawn.values.iter().cloned()));
+    set.extend(keys.clone().zip(point.values.iter().cloned()));
     for (key, value) in set {
         // The plan has set the same in the same file.
         place(&mut document, key, edited(&value));
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     absolute_files(document.as_table_mut(), folder);
-    let said: Vec<String> = keys.map(str::to_owned).collect();
+    let settings: Vec<String> = keys.map(str::to_owned).collect();
     let name = plan.file.text.path.file_name().unwrap_or_default();
     Ok(format!(
         "# Run {run} of {}, which sets run.seed, run.policies{}{}.\n{document}",
         name.to_string_lossy(),
-        if said.is_empty() { "" } else { ", " },
-        said.join(", "),
+        if settings.is_empty() { "" } else { ", " },
+        settings.join(", "),
     ))
 }
 

@@ -326,7 +326,7 @@ pub(crate) mod serial {
 /// Backup registers: they keep what they hold over resets, and without power where a battery is at VBAT.
 pub(crate) mod backup {
     use super::RCC;
-    use board_machine::{KEPT_WORDS, Kept};
+    use board_machine::{RETAINED_WORDS, RetainedMemory};
     use stm32_metapac::{PWR, TAMP};
 
     pub(crate) struct Registers;
@@ -338,13 +338,13 @@ pub(crate) mod backup {
         Registers
     }
 
-    impl Kept for Registers {
+    impl RetainedMemory for Registers {
         fn word(&self, at: usize) -> u32 {
-            TAMP.bkpr(at % KEPT_WORDS).read().bkp()
+            TAMP.bkpr(at % RETAINED_WORDS).read().bkp()
         }
 
-        fn put(&mut self, at: usize, word: u32) {
-            TAMP.bkpr(at % KEPT_WORDS).write(|w| w.set_bkp(word));
+        fn set_word(&mut self, at: usize, word: u32) {
+            TAMP.bkpr(at % RETAINED_WORDS).write(|w| w.set_bkp(word));
         }
     }
 }

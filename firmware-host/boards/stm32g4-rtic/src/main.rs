@@ -147,8 +147,8 @@ mod app {
     /// What the retainer bearing had borne at the last reset; `None` where nobody can say.
     fn landings() -> Option<Landings<backup::Registers>> {
         match Landings::at_boot(backup::set_up()) {
-            Ok((landings, told)) => {
-                if told.is_some() {
+            Ok((landings, reported)) => {
+                if reported.is_some() {
                     serial::send(board_machine::LANDINGS_MISSING);
                 }
                 Some(landings)

@@ -275,7 +275,7 @@ pub(crate) mod command_watch {
 /// Backup registers: they keep what they hold over resets, and without power where a battery is at VBAT.
 pub(crate) mod backup {
     use super::{Peri, pac, peripherals};
-    use board_machine::{KEPT_WORDS, Kept};
+    use board_machine::{RETAINED_WORDS, RetainedMemory};
     use pac::{PWR, RCC, RTC};
 
     pub(crate) struct Registers;
@@ -287,13 +287,13 @@ pub(crate) mod backup {
         Registers
     }
 
-    impl Kept for Registers {
+    impl RetainedMemory for Registers {
         fn word(&self, at: usize) -> u32 {
-            RTC.bkpr(at % KEPT_WORDS).read().bkp()
+            RTC.bkpr(at % RETAINED_WORDS).read().bkp()
         }
 
-        fn put(&mut self, at: usize, word: u32) {
-            RTC.bkpr(at % KEPT_WORDS).write(|w| w.set_bkp(word));
+        fn set_word(&mut self, at: usize, word: u32) {
+            RTC.bkpr(at % RETAINED_WORDS).write(|w| w.set_bkp(word));
         }
     }
 }

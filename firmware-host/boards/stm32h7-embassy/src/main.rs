@@ -135,8 +135,8 @@ async fn main(_spawner: Spawner) {
         .await;
     }
     let landings = match Landings::at_boot(backup::set_up(p.RTC)) {
-        Ok((landings, told)) => {
-            if told.is_some() {
+        Ok((landings, reported)) => {
+            if reported.is_some() {
                 say(&mut serial, LANDINGS_MISSING).await;
             }
             Some(landings)

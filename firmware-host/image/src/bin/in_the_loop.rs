@@ -18,10 +18,10 @@ mod image {
             report::failed("there is no console")
         };
         let mut supervisor = None;
-        while let Some([kind]) = input.take() {
+        while let Some([kind]) = input.next_bytes() {
             let answered = match (kind, &mut supervisor) {
                 (line::CONFIGURE, _) => {
-                    let config = input.take().map(|bytes| wire::config_of(&bytes));
+                    let config = input.next_bytes().map(|bytes| wire::config_of(&bytes));
                     supervisor = config.as_ref().and_then(<Float as Ticked>::new);
                     output.append(&[match &mut supervisor {
                         Some(supervisor) => {
@@ -32,13 +32,13 @@ mod image {
                     }])
                 }
                 (line::TICK, Some(supervisor)) => {
-                    let Some(bytes) = input.take() else {
+                    let Some(bytes) = input.next_bytes() else {
                         break;
                     };
                     let sample = wire::sample_of_bits(&wire::sample_of(&bytes));
                     let command = supervisor.tick(&sample);
                     let mut bytes = [0; COMMAND_BYTES];
-                    wire::put_command(&wire::command_bits(&command), &mut bytes);
+                    wire::encode_command(&wire::command_bits(&command), &mut bytes);
                     output.append(&bytes)
                 }
                 (line::QUIT, _) => exit::success(),

@@ -45,8 +45,8 @@ mod firmware {
     /// Two copies of the ledger of landings. RAM that the start-up leaves as it is stands for EEPROM, FRAM or flash, which keep it
     /// without power, too.
     #[unsafe(link_section = ".uninit.LEDGER")]
-    static KEPT: [Kept; 2] = [const { [const { AtomicU8::new(0) }; LEDGER_BYTES] }; 2];
-    type Kept = [AtomicU8; LEDGER_BYTES];
+    static KEPT: [LedgerCopy; 2] = [const { [const { AtomicU8::new(0) }; LEDGER_BYTES] }; 2];
+    type LedgerCopy = [AtomicU8; LEDGER_BYTES];
 
     /// The interrupt's own, on its way there: taken once.
     static HANDED: Mutex<Cell<Option<Control>>> = Mutex::new(Cell::new(None));
@@ -57,7 +57,7 @@ mod firmware {
         /// The last command came when the next period had begun.
         late: bool,
         hint: IntegratorHint,
-        /// What the amplifiers are told \[N\].
+        /// Commands to the amplifiers \[N\].
         force_n: [f32; 2],
     }
 
@@ -166,7 +166,7 @@ mod firmware {
         Some(ledger)
     }
 
-    fn write(place: &Kept, ledger: &Ledger) {
+    fn write(place: &LedgerCopy, ledger: &Ledger) {
         for (byte, value) in place.iter().zip(ledger.to_bytes()) {
             byte.store(value, Ordering::Relaxed);
         }

@@ -67,7 +67,7 @@ fn tick<U: Ticked>() -> Work<U> {
 #[inline(never)]
 fn turns<U: Ticked>(_: &mut U, _: &U::Sample) -> MaybeUninit<U::Command> {
     let turns = TURNS.load(Ordering::Relaxed);
-    // SAFETY: the loop touches one register, which is told, and the flags; the number is not zero.
+    // SAFETY: the loop touches one register, which is declared, and the flags; the number is not zero.
     unsafe {
         core::arch::asm!(
             "2:",
@@ -124,12 +124,12 @@ pub fn run<U: Ticked>() -> ! {
     let Some(mut counts) = file::File::create(c"counts.bin") else {
         report::failed("counts.bin cannot be written")
     };
-    let Some(header) = stream.take().and_then(|b| wire::header_of(&b)) else {
+    let Some(header) = stream.next_bytes().and_then(|b| wire::header_of(&b)) else {
         report::failed("stream.bin is no stream of this version")
     };
     let (mut ticks, mut stack_bytes) = (0_u32, 0_u32);
     for _ in 0..header.segments {
-        let Some(segment) = stream.take().and_then(|b| wire::segment_of(&b)) else {
+        let Some(segment) = stream.next_bytes().and_then(|b| wire::segment_of(&b)) else {
             report::failed("stream.bin ends before its last segment")
         };
         let Some(mut supervisor) = U::new(&segment.config) else {

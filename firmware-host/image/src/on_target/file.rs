@@ -46,7 +46,7 @@ impl File {
     }
 
     /// The next bytes of the file.
-    pub fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+    pub fn next_bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
         let mut bytes = [0; N];
         self.fill(&mut bytes).then_some(bytes)
     }

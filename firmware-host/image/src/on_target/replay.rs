@@ -16,13 +16,13 @@ pub fn run<U: UnderTest>() -> ! {
     let Some(mut stream) = file::File::read(c"stream.bin") else {
         report::failed("stream.bin cannot be read")
     };
-    let Some(header) = stream.take().and_then(|b| wire::header_of(&b)) else {
+    let Some(header) = stream.next_bytes().and_then(|b| wire::header_of(&b)) else {
         report::failed("stream.bin is no stream of this version")
     };
     let (mut ticks, mut exact) = (0_u32, 0_u32);
     let (mut hash, mut read_outs) = (Hash::default(), Hash::default());
     for _ in 0..header.segments {
-        let Some(segment) = stream.take().and_then(|b| wire::segment_of(&b)) else {
+        let Some(segment) = stream.next_bytes().and_then(|b| wire::segment_of(&b)) else {
             report::failed("stream.bin ends before its last segment")
         };
         let Some(mut supervisor) = U::new(&segment.config) else {
@@ -47,7 +47,7 @@ pub fn run<U: UnderTest>() -> ! {
                 let sample = U::sample(&wire::sample_of(sample));
                 let command = U::TICK(&mut supervisor, &sample);
                 let mut bytes = [0; COMMAND_BYTES];
-                wire::put_command(&U::bits(&command), &mut bytes);
+                wire::encode_command(&U::bits(&command), &mut bytes);
                 hash.add(&bytes);
                 ticks += 1;
                 exact += u32::from(bytes == expected);

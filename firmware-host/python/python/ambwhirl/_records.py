@@ -41,7 +41,7 @@ class Event:
     """An event: what came of it, and the record of each plane."""
 
     summary: dict[str, Any] | None
-    """What came of it in numbers; none where that is not whole in the file."""
+    """The outcome in numbers; none where that is not whole in the file."""
     text: str | None
     """The same in words."""
     replay: dict[str, Any] | None

@@ -8,13 +8,13 @@ use firmware_bench::scene::Scene;
 use std::path::{Path, PathBuf};
 use supervisor::{PARAMETERS, Shaft};
 
-/// A machine as its scene has it.
-pub(super) struct Machine {
+/// The configured machine, as its scene has it.
+pub(super) struct Setup {
     path: PathBuf,
     scene: Scene,
 }
 
-impl Machine {
+impl Setup {
     /// Of a scene file.
     ///
     /// # Errors
@@ -31,10 +31,10 @@ impl Machine {
     }
 
     fn shaft(&self) -> Option<Shaft> {
-        self.scene.told.or_else(|| self.scene.shaft())
+        self.scene.configured_shaft.or_else(|| self.scene.shaft())
     }
 
-    /// The rotor of both planes, as the supervisor is told it.
+    /// The rotor of both planes, as the supervisor is configured.
     ///
     /// # Errors
     /// [`CommandError`] of a scene that has no two planes with a magnet.

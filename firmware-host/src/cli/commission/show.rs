@@ -2,7 +2,7 @@
 
 use crate::cli::advise::Format;
 use crate::cli::error::CommandError;
-use crate::cli::screen::tell;
+use crate::cli::screen::print_wrapped;
 use firmware_bench::commission::{Commissioned, Found};
 use firmware_bench::report::commission;
 use firmware_bench::report::lines::lined;
@@ -79,12 +79,12 @@ fn line(name: &str, f: &Found, format: Format) -> String {
 /// Tables of what is found, what is configured otherwise, and what is not found.
 pub(super) fn tables(of: &Commissioned) -> Result<(), CommandError> {
     let columns = ["number", "unit", "value", "at least", "at most", "from"];
-    tell(&table(&columns, commission::number_rows(of)))?;
+    print_wrapped(&table(&columns, commission::number_rows(of)))?;
     if !of.contradictions.is_empty() {
         let columns = ["configured otherwise", "as", "at least", "at most", "costs"];
-        tell(&table(&columns, commission::difference_rows(of)))?;
+        print_wrapped(&table(&columns, commission::difference_rows(of)))?;
     }
-    tell(&table(&["not found", "why"], commission::missing_rows(of)))
+    print_wrapped(&table(&["not found", "why"], commission::missing_rows(of)))
 }
 
 fn table(columns: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {

@@ -73,12 +73,12 @@ mod tests {
             question: "mass in kg",
             range,
         };
-        let mut said = Vec::new();
-        let answer = mass.ask(&mut "ten\n-1\n 1e1 \n".as_bytes(), &mut said);
+        let mut out = Vec::new();
+        let answer = mass.ask(&mut "ten\n-1\n 1e1 \n".as_bytes(), &mut out);
         assert_eq!(answer.unwrap(), 10.0);
-        let said = String::from_utf8(said).unwrap();
-        assert_eq!(said.matches("mass in kg: ").count(), 3);
-        assert_eq!(said.matches("expected a number greater than 0").count(), 2);
+        let out = String::from_utf8(out).unwrap();
+        assert_eq!(out.matches("mass in kg: ").count(), 3);
+        assert_eq!(out.matches("expected a number greater than 0").count(), 2);
         let nobody = mass.ask(&mut "".as_bytes(), &mut Vec::new()).unwrap_err();
         assert_eq!(
             (nobody.exit_code(), nobody.to_string().as_str()),

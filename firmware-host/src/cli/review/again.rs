@@ -3,7 +3,7 @@
 use crate::cli::error::CommandError;
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::identify::Findings;
-use firmware_bench::record::story::Event;
+use firmware_bench::record::narrative::Event;
 use firmware_bench::run::again::scene_of_event;
 use firmware_bench::run::recording::recorded;
 use firmware_bench::run::verdict::{FailedRun, Results};
@@ -14,7 +14,7 @@ use std::fs::File;
 use std::path::Path;
 use supervisor::PARAMETERS;
 
-/// The scene that was run, and what came of it.
+/// The scene that was run, and its outcome.
 pub(super) struct Again {
     pub(super) scene: Scene,
     pub(super) results: Results,
@@ -46,8 +46,8 @@ pub(super) fn simulate(
     }
     if !settings.is_empty() {
         let other = scene_of_event(spec.clone(), of, settings)?;
-        let said: Vec<String> = settings.iter().map(Setting::to_string).collect();
-        let name = format!("supervisor, {}", said.join(", "));
+        let texts: Vec<String> = settings.iter().map(Setting::to_string).collect();
+        let name = format!("supervisor, {}", texts.join(", "));
         keep(&mut results, &name, &other, PolicyKind::Supervisor);
     }
     Ok(Again {
@@ -74,10 +74,10 @@ pub(super) fn allowances(
 
 /// Names of parameters of which record and scene have values more than a hundredth apart.
 fn differing(record: &PlaneRecord, scene: &Scene) -> Vec<&'static str> {
-    let (Some(told), Some(derived)) = (record.config, scene.planes[0].supervisor) else {
+    let (Some(recorded), Some(derived)) = (record.config, scene.planes[0].supervisor) else {
         return Vec::new();
     };
-    let values = told.values().into_iter().zip(derived.values());
+    let values = recorded.values().into_iter().zip(derived.values());
     let apart = |(a, b): (f32, f32)| (a - b).abs() > 0.01 * a.abs().max(b.abs());
     let named = PARAMETERS.iter().zip(values);
     named

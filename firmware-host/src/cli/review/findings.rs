@@ -63,7 +63,7 @@ pub(super) fn tables(
             right(or_dash(friction, 1.0, 3)),
         ]);
     }
-    let mut told = lined(["the machine, by this event", "value", "from", "to"]);
+    let mut machine = lined(["the machine, by this event", "value", "from", "to"]);
     for (name, unit, factor, digits, of) in ROWS {
         let name = match unit {
             "" => name.to_owned(),
@@ -77,10 +77,10 @@ pub(super) fn tables(
             }
             None => row.push(Cell::new("not identifiable")),
         }
-        told.add_row(row);
+        machine.add_row(row);
     }
     [
         ("Contacts that were found", contacts),
-        ("The machine, by this event", told),
+        ("The machine, by this event", machine),
     ]
 }

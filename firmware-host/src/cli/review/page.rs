@@ -2,7 +2,7 @@
 
 use crate::cli::error::CommandError;
 use crate::cli::output::{self, Staging};
-use crate::cli::review::told::{damaged, differs, of_bearings};
+use crate::cli::review::text::{damaged, differs, of_bearings};
 use crate::cli::review::{Examined, of_event, used};
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::remaining::Remaining;
@@ -54,22 +54,22 @@ pub(super) fn head(
         "Flight record"
     };
     let many = events.len() > 1;
-    let told: Vec<String> = (events.iter().enumerate())
+    let paragraphs: Vec<String> = (events.iter().enumerate())
         .map(|(i, of)| {
-            let told = of.event.told().map_or_else(
+            let paragraph = of.event.narrative().map_or_else(
                 || "No verdict: the outcome of the event is not whole in the file.".to_owned(),
-                |told| told.paragraph(used(of_event(bearings, i, events))),
+                |narrative| narrative.paragraph(used(of_event(bearings, i, events))),
             );
             match many {
-                true => format!("Event {}: {told}", i + 1),
-                false => told,
+                true => format!("Event {}: {paragraph}", i + 1),
+                false => paragraph,
             }
         })
         .collect();
     let before = damaged(damage).into_iter();
     Head {
         title: format!("{what} {name}"),
-        headline: told.join(" "),
+        headline: paragraphs.join(" "),
         story: (log.into_iter().chain(of_bearings(bearings)))
             .collect::<Vec<_>>()
             .join("\n\n"),

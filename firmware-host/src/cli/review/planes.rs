@@ -1,49 +1,49 @@
 //! Both planes of a rotor beside each other, for a person.
 
 use super::tables::NOT_KNOWN;
+use firmware_bench::record::narrative::{Event, Narrative};
 use firmware_bench::record::shapes::Shapes;
-use firmware_bench::record::story::{Event, Told};
 use firmware_bench::report::lines::{Cell, Lines, lined, right};
 use firmware_bench::report::plot::text::figures;
 
 /// Name and text of a figure.
-type Row = (&'static str, fn(&Told) -> String);
+type Row = (&'static str, fn(&Narrative) -> String);
 
 const ROWS: [Row; 11] = [
-    ("outcome", |told| told.outcome.to_owned()),
-    ("position unknown [ms]", |told| {
-        figures(1e3 * told.position_unknown_s)
+    ("outcome", |plane| plane.outcome.to_owned()),
+    ("position unknown [ms]", |plane| {
+        figures(1e3 * plane.position_unknown_s)
     }),
-    ("touches", |told| {
-        (told.touches).map_or(NOT_KNOWN.to_owned(), |n| n.to_string())
+    ("touches", |plane| {
+        (plane.touches).map_or(NOT_KNOWN.to_owned(), |n| n.to_string())
     }),
-    ("in contact [ms]", |told| known(told.contact_s, 1e3)),
-    ("hardest impact [m/s]", |told| {
-        known(told.hardest_impact_m_s, 1.0)
+    ("in contact [ms]", |plane| known(plane.contact_s, 1e3)),
+    ("hardest impact [m/s]", |plane| {
+        known(plane.hardest_impact_m_s, 1.0)
     }),
-    ("backward whirl recognised", |told| {
-        let word = match told.whirled {
+    ("backward whirl recognised", |plane| {
+        let word = match plane.whirled {
             Some(true) => "yes",
             Some(false) => "no",
             None => NOT_KNOWN,
         };
         word.to_owned()
     }),
-    ("fastest backward motion [Hz]", |told| {
-        known(told.max_whirl_hz, 1.0)
+    ("fastest backward motion [Hz]", |plane| {
+        known(plane.max_whirl_hz, 1.0)
     }),
-    ("of what the force arrests [%]", |told| {
-        known(told.whirl_share, 100.0)
+    ("of what the force arrests [%]", |plane| {
+        known(plane.whirl_share, 100.0)
     }),
-    ("severity of the event", |told| known(told.severity, 1.0)),
-    ("in all, of its limit", |told| {
+    ("severity of the event", |plane| known(plane.severity, 1.0)),
+    ("severity index, of its limit", |plane| {
         format!(
             "{} of {}",
-            figures(told.severity_index),
-            figures(told.severity_limit)
+            figures(plane.severity_index),
+            figures(plane.severity_limit)
         )
     }),
-    ("landings", |told| told.landings.to_string()),
+    ("landings", |plane| plane.landings.to_string()),
 ];
 
 /// So many times a figure, where a reading carried it.
@@ -51,7 +51,7 @@ fn known(value: Option<f64>, times: f64) -> String {
     value.map_or(NOT_KNOWN.to_owned(), |value| figures(times * value))
 }
 
-/// What came of the event in each plane of a rotor; `None` for a record of one plane.
+/// Outcome of the event in each plane of a rotor; `None` for a record of one plane.
 pub(super) fn figures_of_planes(event: &Event<'_>) -> Option<Lines> {
     if event.records[0].head.planes < 2 {
         return None;
@@ -59,11 +59,11 @@ pub(super) fn figures_of_planes(event: &Event<'_>) -> Option<Lines> {
     let mut header = vec![Cell::new("figure")];
     header.extend((event.records.iter()).map(|r| right(format!("plane {}", r.head.plane))));
     let mut table = lined(header);
-    let told = event.told_of_planes();
+    let narratives = event.narratives();
     for (name, text) in ROWS {
-        let cells = told
+        let cells = narratives
             .iter()
-            .map(|told| told.as_ref().map_or("–".to_owned(), text));
+            .map(|narrative| narrative.as_ref().map_or("–".to_owned(), text));
         table.add_row([Cell::new(name)].into_iter().chain(cells.map(right)));
     }
     Some(table)

@@ -1,4 +1,4 @@
-//! What a sweep came to, as text.
+//! Outcome of a sweep, as text.
 
 use super::Done;
 use firmware_bench::report::lines::{Cell, lined, right};
@@ -65,7 +65,7 @@ pub(super) fn all(plan: &Plan, summary: &Summary, done: &Done) -> String {
             let _ = writeln!(
                 text,
                 "  {value:.4e}, {}: firmware-host run {}",
-                said(outcome),
+                painted(outcome),
                 path.display()
             );
         }
@@ -97,9 +97,8 @@ pub(super) fn all(plan: &Plan, summary: &Summary, done: &Done) -> String {
 }
 
 /// In its colour on a terminal.
-fn said(outcome: &str) -> String {
-    Outcome::from_name(outcome)
-        .map_or_else(|| outcome.to_owned(), |known| Tone::of(known).said(outcome))
+fn painted(outcome: &str) -> String {
+    Outcome::from_name(outcome).map_or_else(|| outcome.to_owned(), |of| Tone::of(of).paint(outcome))
 }
 
 fn of_policy(policy: &PolicySummary) -> String {
@@ -107,7 +106,7 @@ fn of_policy(policy: &PolicySummary) -> String {
     outcomes.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
     let mut counts: Vec<String> = outcomes
         .iter()
-        .map(|(outcome, count)| format!("{count} {}", said(outcome)))
+        .map(|(outcome, count)| format!("{count} {}", painted(outcome)))
         .collect();
     if policy.failed > 0 {
         counts.push(format!("{} failed", policy.failed));

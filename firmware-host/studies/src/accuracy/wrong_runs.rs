@@ -19,7 +19,7 @@ const NUDGE: f64 = 1e-12;
 /// … and tolerance of collocation that must confirm it.
 const CONFIRM_AT: f64 = 1e-8;
 
-/// What came of all starts at one tolerance.
+/// Outcome of all starts at one tolerance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WrongRow {
     /// Title of the scene.
@@ -40,7 +40,7 @@ pub struct WrongRow {
     pub left_out: u32,
 }
 
-/// What came of one start; `None` where it was left out.
+/// Outcome of one start; `None` where it was left out.
 type Start = Option<[Run; TOLERANCES.len()]>;
 
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -73,7 +73,7 @@ impl Claim {
     }
 }
 
-/// What came of the claims, in a sentence for the top of a page; those that do not hold by name, of many the first.
+/// Outcome of the claims, in a sentence for the top of a page; those that do not hold by name, of many the first.
 pub(super) fn conclusion(claims: &[Claim], cases: u64) -> String {
     const NAMED: usize = 5;
     let broken: Vec<&str> = (claims.iter().filter(|claim| !claim.holds))

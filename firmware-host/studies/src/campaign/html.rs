@@ -1,11 +1,11 @@
 //! A page of chapters as one HTML document without scripts, made by the builder of all report pages.
 
 use super::chapter::{Block, Drawing, Figure, Page, Table};
-use firmware_bench::report::drawn::Drawn;
 use firmware_bench::report::html_page::{Head, HtmlPage, anchor};
 use firmware_bench::report::listing::Listing;
 use firmware_bench::report::markup::Markup;
 use firmware_bench::report::plot::PlotError;
+use firmware_bench::report::rendered::Rendered;
 
 /// The document. Deterministic: the same page gives the same bytes.
 ///
@@ -58,7 +58,7 @@ fn push_blocks(
             }
             Block::Table(table, marked) => html.table(&listing(table, marked)),
             Block::Figures(figures) => {
-                let drawn: Result<Vec<Drawn>, PlotError> = (figures.iter().zip(1..))
+                let drawn: Result<Vec<Rendered>, PlotError> = (figures.iter().zip(1..))
                     .filter(|(figure, _)| !shown.is_some_and(|shown| std::ptr::eq(shown, *figure)))
                     .map(|(figure, number)| drawn(figure, &format!("{chapter}.{number}")))
                     .collect();
@@ -77,10 +77,10 @@ fn listing(table: &Table, marked: &[bool]) -> Listing {
     }
 }
 
-fn drawn(figure: &Figure, number: &str) -> Result<Drawn, PlotError> {
+fn drawn(figure: &Figure, number: &str) -> Result<Rendered, PlotError> {
     let drawn = match &figure.drawing {
-        Drawing::Chart(plot) => Drawn::of_chart(plot)?,
-        Drawing::Map(plot) => Drawn::of_map(plot)?,
+        Drawing::Chart(plot) => Rendered::of_chart(plot)?,
+        Drawing::Map(plot) => Rendered::of_map(plot)?,
     };
     let id = format!("figure-{}", anchor(&figure.file));
     Ok(drawn.numbered(id, number, &figure.caption))

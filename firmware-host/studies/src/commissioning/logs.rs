@@ -8,7 +8,7 @@ use crate::machines::rotors::{Class, RotorCase};
 use firmware_bench::commission::log::Log;
 use firmware_bench::commission::two_planes::TwoPlanes;
 use firmware_bench::commission::{Commissioned, Found};
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::trace::{Recorder, TraceRow};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -19,7 +19,7 @@ struct Logged(Log);
 
 impl Recorder for Logged {
     fn row(&mut self, row: &TraceRow) {
-        let Some(said) = row.supervisor.filter(|_| !row.mode_change) else {
+        let Some(trace) = row.supervisor.filter(|_| !row.mode_change) else {
             return;
         };
         let Log {
@@ -31,7 +31,7 @@ impl Recorder for Logged {
         } = &mut self.0;
         position_m.push(row.measured_m.into());
         command_n.push(row.commanded_n.into());
-        stimulus_n.push(said.stimulus_n.map(f64::from));
+        stimulus_n.push(trace.stimulus_n.map(f64::from));
         spin_rad_s
             .get_or_insert_default()
             .push(row.plant.spin_rad_s);
@@ -42,8 +42,8 @@ impl Recorder for Logged {
 fn logged<const PLANES: usize>(scene: &Scene) -> Result<[Log; PLANES], String> {
     let mut rows = [(); PLANES].map(|()| Logged::default());
     let recorders = Recorders::of_planes(&mut rows);
-    let (kind, rigour) = (PolicyKind::Supervisor, Rigour::default());
-    record(scene, kind, recorders, rigour, &mut |_| {}).map_err(|error| error.to_string())?;
+    let (kind, accuracy) = (PolicyKind::Supervisor, Accuracy::default());
+    record(scene, kind, recorders, accuracy, &mut |_| {}).map_err(|error| error.to_string())?;
     let period_s = 1.0 / scene.sample_rate_hz;
     Ok(rows.map(|Logged(log)| Log { period_s, ..log }))
 }
@@ -91,7 +91,7 @@ fn identified(seed: u64, number: u64) -> Result<Option<[Identified; 3]>, String>
 pub(super) fn identification(seed: u64, machines: u64, progress: &dyn Progress) -> OfMachines {
     let numbers: Vec<u64> = (0..machines).collect();
     let all = run_all(&numbers, progress, |number| identified(seed, *number));
-    let (mut odd, mut told) = (Vec::new(), Vec::new());
+    let (mut odd, mut parameters) = (Vec::new(), Vec::new());
     for (number, one) in numbers.iter().zip(all) {
         let sensors = SENSORS[*number as usize % SENSORS.len()].name();
         match one {
@@ -103,16 +103,16 @@ pub(super) fn identification(seed: u64, machines: u64, progress: &dyn Progress) 
                     format!(
                         "log of machine {number}, {sensors}: {} is {is:.4e}: {}",
                         f.name,
-                        said(f)
+                        with_interval(f)
                     )
                 }));
-                told.push(one);
+                parameters.push(one);
             }
             Ok(None) => odd.push(format!("log of machine {number}, {sensors}: refused")),
             Err(why) => odd.push(format!("log of machine {number}, {sensors}: {why}")),
         }
     }
-    let all = told;
+    let all = parameters;
     let mut rows = Vec::new();
     for (place, (name, wanted)) in IDENTIFIED.into_iter().enumerate() {
         let of = || all.iter().map(|one| &one[place]);
@@ -142,7 +142,7 @@ pub(super) fn identification(seed: u64, machines: u64, progress: &dyn Progress) 
     OfMachines { rows, odd }
 }
 
-fn said(f: &Found) -> String {
+fn with_interval(f: &Found) -> String {
     format!("{:.4e}, {:.4e} to {:.4e}", f.value, f.low, f.high)
 }
 
@@ -181,7 +181,7 @@ const OF_ROTOR: [(&str, f64); 8] = [
 ];
 
 /// A number of a log that holds it, what it is, and what an error is a share of.
-struct Told {
+struct Parameter {
     found: Option<Found>,
     is: f64,
     scale: f64,
@@ -190,12 +190,12 @@ struct Told {
 /// Numbers of rotors as rows of a table, and in words how many logs there are.
 pub(super) struct OfRotors {
     pub(super) rows: Vec<[String; 7]>,
-    pub(super) story: String,
+    pub(super) summary: String,
     pub(super) odd: Vec<String>,
 }
 
 /// What the log of a rotor says; an error where it is refused.
-fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
+fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Parameter>, String> {
     let case = RotorCase::new(seed, class, number);
     let measures = case.measures();
     let mut draw = Draw::new(seed ^ OF_UNBALANCE, 3 * number + class as u64);
@@ -228,27 +228,27 @@ fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
         (0.0, apart_m),
         (0.0, 1.0),
     ];
-    let told = OF_ROTOR
+    let parameters = OF_ROTOR
         .iter()
         .zip(truth)
-        .map(|((name, _), (is, scale))| Told {
+        .map(|((name, _), (is, scale))| Parameter {
             found: found.parameters.iter().find(|f| f.name == *name).cloned(),
             is,
             scale,
         });
-    Ok(told.collect())
+    Ok(parameters.collect())
 }
 
 /// How far off a number is in all logs of a class.
-fn row(class: Class, place: usize, told: &[&Vec<Told>]) -> [String; 7] {
+fn row(class: Class, place: usize, parameters: &[&Vec<Parameter>]) -> [String; 7] {
     let (name, wanted) = OF_ROTOR[place];
-    let found: Vec<(&Told, &Found)> = (told.iter())
+    let found: Vec<(&Parameter, &Found)> = (parameters.iter())
         .filter_map(|all| Some((&all[place], all[place].found.as_ref()?)))
         .collect();
-    let held = |(told, f): &&(&Told, &Found)| (f.low..=f.high).contains(&told.is);
+    let held = |(p, f): &&(&Parameter, &Found)| (f.low..=f.high).contains(&p.is);
     let held = found.iter().filter(held).count();
     let mut off: Vec<f64> = (found.iter())
-        .map(|(told, f)| (f.value - told.is).abs() / told.scale)
+        .map(|(p, f)| (f.value - p.is).abs() / p.scale)
         .collect();
     off.sort_by(f64::total_cmp);
     let at = |share: f64| off.get((share * off.len() as f64) as usize);
@@ -276,35 +276,38 @@ pub(super) fn of_rotors(seed: u64, number: u64, progress: &dyn Progress) -> OfRo
         of_rotor(seed, *class, *number)
     });
     let (mut rows, mut refused, mut odd) = (Vec::new(), Vec::new(), Vec::new());
-    for ((class, number), told) in jobs.iter().zip(&all) {
+    for ((class, number), parameters) in jobs.iter().zip(&all) {
         let of = format!("log of a {} rotor {number}", class.name());
-        match told {
-            Ok(told) => odd.extend((told.iter()).filter_map(|Told { found, is, .. }| {
-                let f = found.as_ref()?;
-                let held = (f.low..=f.high).contains(is);
-                (!held).then(|| format!("{of}: {} is {is:.4e}: {}", f.name, said(f)))
-            })),
+        match parameters {
+            Ok(parameters) => odd.extend((parameters.iter()).filter_map(
+                |Parameter { found, is, .. }| {
+                    let f = found.as_ref()?;
+                    let held = (f.low..=f.high).contains(is);
+                    (!held).then(|| format!("{of}: {} is {is:.4e}: {}", f.name, with_interval(f)))
+                },
+            )),
             Err(why) => odd.push(format!("{of}: {why}")),
         }
     }
     for class in CLASSES {
         let own = jobs.iter().zip(&all).filter(|((c, _), _)| *c == class);
-        let none = own.filter(|(_, told)| told.is_err()).count();
+        let none = own.filter(|(_, parameters)| parameters.is_err()).count();
         refused.push(format!("{none} {}", class.name()));
     }
     // What counts most of all classes first.
     for places in [0..MOST_ASKED, MOST_ASKED..OF_ROTOR.len()] {
         for class in CLASSES {
             let own = jobs.iter().zip(&all).filter(|((c, _), _)| *c == class);
-            let told: Vec<&Vec<Told>> = own.filter_map(|(_, t)| t.as_ref().ok()).collect();
-            let own = places.clone().map(|place| row(class, place, &told));
+            let parameters: Vec<&Vec<Parameter>> =
+                own.filter_map(|(_, p)| p.as_ref().ok()).collect();
+            let own = places.clone().map(|place| row(class, place, &parameters));
             rows.extend(own);
         }
     }
     OfRotors {
         rows,
         odd,
-        story: format!(
+        summary: format!(
             "{number} rotors of each class with an unbalance of 0.2 to 3 % of the clearance; errors as shares of what is, of the cap over the clearance, of the way between the bearings. Logs that are refused: {}.",
             refused.join(", ")
         ),

@@ -3,7 +3,7 @@
 use super::{BEFORE_S, Change, WINDOW, WINDOWS};
 use crate::campaign::{Progress, run_all};
 use crate::machines::rotors::{Class, RotorCase};
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::trace::{Recorder, TraceRow};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -24,7 +24,7 @@ pub(super) fn confirms(scene: &mut Scene, change: Option<Change>) {
     scene.duration_s = BEFORE_S + 2.0 * WINDOWS * longest_s;
 }
 
-/// Two planes that confirm their configuration: what each came to.
+/// Two planes that confirm their configuration: the outcome of each.
 fn rotor(
     seed: u64,
     class: Class,
@@ -40,7 +40,7 @@ fn rotor(
         &scene,
         PolicyKind::Supervisor,
         recorders,
-        Rigour::default(),
+        Accuracy::default(),
         &mut |_| {},
     );
     let ended = ended.map_err(|error| error.to_string())?;

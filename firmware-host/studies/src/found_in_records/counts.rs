@@ -4,7 +4,7 @@ use firmware_bench::record::identify::{Estimate, Findings};
 use firmware_bench::run::clairvoyant::restitution;
 use firmware_bench::run::trace::{Trace, TraceRow};
 use firmware_bench::scene::Scene;
-use plant_model::Mode;
+use plant_model::ContactMode;
 use std::ops::AddAssign;
 
 /// Normal speed from which an impact is to be found \[m/s\], and by how much its time may be off \[ticks\].
@@ -108,11 +108,11 @@ impl Truth {
         let (mut impacts, mut touching) = (Vec::new(), Vec::new());
         for pair in trace.rows.windows(2) {
             let (plant, at) = (&pair[1].plant, tick(&pair[1]));
-            if !within.contains(&at) || plant.mode == Mode::Flight {
+            if !within.contains(&at) || plant.mode == ContactMode::Flight {
                 continue;
             }
             touching.push(at);
-            if pair[0].plant.mode == Mode::Flight {
+            if pair[0].plant.mode == ContactMode::Flight {
                 let n = plant.position_m.normalize();
                 impacts.push((at, plant.velocity_m_s.dot(&n)));
             }
@@ -171,10 +171,10 @@ pub fn compare(scene: &Scene, trace: &Trace, last: u32, found: &Findings) -> Cou
         Some((0.0, mu)) => Some(mu),
         Some(_) => None,
     };
-    let told = &found.identified;
+    let identified = &found.identified;
     if let Some(mu) = mu {
-        (counts.friction).of_estimate(told.friction_coefficient, mu, 0.1 * mu);
+        (counts.friction).of_estimate(identified.friction_coefficient, mu, 0.1 * mu);
     }
-    (counts.restitution).of_estimate(told.restitution, restitution(&plant), 0.1);
+    (counts.restitution).of_estimate(identified.restitution, restitution(&plant), 0.1);
     counts
 }

@@ -20,7 +20,7 @@ struct Job<'a> {
     contender: Contender,
 }
 
-/// What came of it.
+/// Outcome of a run.
 struct Ran {
     recorded: bool,
     counts: Counts,
@@ -54,22 +54,22 @@ fn ran(job: &Job<'_>) -> Option<Ran> {
     if let Some(found) = event.findings() {
         ran.counts = compare(scene, &trace, last, &found);
     }
-    // Where the event is the only one what came of it is what came of the run.
+    // Where the event is the only one its outcome is the outcome of the run.
     let report = read_out.report;
-    if let Some(told) = event.told()
+    if let Some(narrative) = event.narrative()
         && report.landings + report.nuisance_engagements == 1
         && report.handed_back == 0
     {
-        let levitated = told.outcome == supervisor::Mode::Levitated.name();
+        let levitated = narrative.outcome == supervisor::Mode::Levitated.name();
         // The summary has how it ended; that it whirled before is another of its figures.
         let same = levitated == figures.free_at_end;
         ran.counts.outcomes.count(same);
-        ran.differs = (!same).then_some((told.outcome, figures.free_at_end));
+        ran.differs = (!same).then_some((narrative.outcome, figures.free_at_end));
     }
     Some(ran)
 }
 
-/// Groups of the catalogue in which the record is told what is not so: the rotor was elsewhere, or another force acted.
+/// Groups of the catalogue in which the record is of inputs that are not so: the rotor was elsewhere, or another force acted.
 const FAULTS: [&str; 2] = ["sensor faults", "drive faults"];
 /// Groups in which a load changes while the rotor flies.
 const VARYING: [&str; 2] = ["blade loss", "shock"];

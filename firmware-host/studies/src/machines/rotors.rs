@@ -28,7 +28,7 @@ pub enum Class {
     Rigid,
     /// Rigid, with nutation of 140 to 1900 Hz behind amplifiers that are quick enough for it.
     Gyroscopic,
-    /// As `Rigid`, with a bending mode between 300 Hz and 4 kHz that nobody is told of.
+    /// As `Rigid`, with a bending mode between 300 Hz and 4 kHz that nobody configures.
     Flexible,
     /// As `Flexible`, sensors and retainer bearings up to 40 mm inboard or outboard of the magnets.
     Bent,

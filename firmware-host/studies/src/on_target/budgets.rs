@@ -12,7 +12,7 @@ pub enum BudgetError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: std::io::Error,
     },
     /// Not what it should be.
@@ -28,7 +28,7 @@ pub enum BudgetError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: std::io::Error,
     },
     /// Nothing for a target.

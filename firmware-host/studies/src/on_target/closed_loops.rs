@@ -1,7 +1,7 @@
 //! Closed loops of the catalogue, recorded.
 
 use super::numbers::Number;
-use super::tape::{Piece, Tape};
+use super::tick_log::{Piece, TickLog};
 use crate::campaign::each;
 use crate::machines::plants::{RATES_HZ, plants};
 use crate::machines::tuned_gains::stored;
@@ -93,9 +93,9 @@ pub(crate) fn closed_loops(
 /// samples are as good as any.
 fn recorded(number: Number, scene: &Scene) -> Option<Piece> {
     let config = scene.planes[0].supervisor?;
-    let tape = Tape::default();
-    let policy = supervised(scene, number.recorder(&config, &tape)?)?;
+    let log = TickLog::default();
+    let policy = supervised(scene, number.recorder(&config, &log)?)?;
     let _ended = run_policy(scene, (policy, "supervisor"), Keep::Verdict, &mut |_| {});
-    let ticks = tape.take();
+    let ticks = log.take();
     Some(Piece { config, ticks })
 }

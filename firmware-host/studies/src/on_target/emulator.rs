@@ -31,12 +31,12 @@ pub enum EmulatorError {
         limit: Duration,
     },
     /// The image says that it failed.
-    #[error("{image} on {machine} failed: {said}")]
+    #[error("{image} on {machine} failed: {output}")]
     Failed {
         image: String,
         machine: &'static str,
-        /// What it and the emulator said.
-        said: String,
+        /// Output of it and the emulator.
+        output: String,
     },
     /// The image did not say what it should.
     #[error("{image} on {machine} did not print {name}")]
@@ -166,13 +166,13 @@ pub struct Ended {
     pub well: bool,
     /// What it has written, of what its console was not taken for.
     pub output: Vec<u8>,
-    /// What the emulator said.
+    /// Messages of the emulator.
     pub errors: String,
 }
 
 impl Ended {
-    /// All that was said.
-    pub fn said(&self) -> String {
+    /// Output and errors in one.
+    pub fn all_output(&self) -> String {
         format!("{}{}", String::from_utf8_lossy(&self.output), self.errors)
     }
 }
@@ -215,7 +215,7 @@ pub fn output_of(
         Some(ended) if !ended.well => Err(EmulatorError::Failed {
             image: name(),
             machine: machine.name,
-            said: ended.said().trim().to_owned(),
+            output: ended.all_output().trim().to_owned(),
         }),
         Some(ended) => Ok(ended.output),
     }
@@ -233,7 +233,7 @@ pub fn run(
     limit: Duration,
 ) -> Result<BTreeMap<String, String>, EmulatorError> {
     let output = output_of(machine, image, folder, time, limit)?;
-    let said = String::from_utf8_lossy(&output);
-    let pairs = said.lines().filter_map(|line| line.split_once(' '));
+    let text = String::from_utf8_lossy(&output);
+    let pairs = text.lines().filter_map(|line| line.split_once(' '));
     Ok(pairs.map(|(n, v)| (n.to_owned(), v.to_owned())).collect())
 }

@@ -31,7 +31,7 @@ pub enum ImageError {
     #[error("the images for {target} do not build:\n{output}")]
     Build {
         target: &'static str,
-        /// What cargo said.
+        /// cargo's message.
         output: String,
     },
     /// An image is not what it should be.

@@ -6,8 +6,8 @@ use super::machines::Machine;
 use firmware_bench::run::controller::Supervise;
 use firmware_image::line::{CONFIGURE, QUIT, READY, TICK};
 use firmware_image::wire::{
-    COMMAND_BYTES, CONFIG_BYTES, SAMPLE_BYTES, command_of, command_of_bits, put_config, put_sample,
-    sample_bits,
+    COMMAND_BYTES, CONFIG_BYTES, SAMPLE_BYTES, command_of, command_of_bits, encode_config,
+    encode_sample, sample_bits,
 };
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
@@ -118,7 +118,7 @@ impl Board {
     /// [`LinkError`]; of a configuration that is refused too.
     pub(crate) fn configure(&mut self, config: &Config) -> Result<(), LinkError> {
         let mut bytes = [0; CONFIG_BYTES];
-        put_config(config, &mut bytes);
+        encode_config(config, &mut bytes);
         match self.line.answer(CONFIGURE, &bytes)? {
             [READY] => Ok(()),
             other => Err(LinkError::Answer(other.to_vec())),
@@ -127,7 +127,7 @@ impl Board {
 
     fn tick(&mut self, sample: &Sample) -> Result<Command, LinkError> {
         let mut bytes = [0; SAMPLE_BYTES];
-        put_sample(&sample_bits(sample), &mut bytes);
+        encode_sample(&sample_bits(sample), &mut bytes);
         let answer: [u8; COMMAND_BYTES] = self.line.answer(TICK, &bytes)?;
         let command = command_of(&answer).ok_or_else(|| LinkError::Answer(answer.to_vec()))?;
         Ok(command_of_bits(&command))
@@ -146,7 +146,7 @@ impl Board {
         self.line.input.write_all(&[QUIT])?;
         match self.running.wait(PATIENCE) {
             Some(ended) if ended.well => Ok(()),
-            Some(ended) => Err(LinkError::Answer(ended.said().into_bytes())),
+            Some(ended) => Err(LinkError::Answer(ended.all_output().into_bytes())),
             None => Err(LinkError::NoEnd),
         }
     }

@@ -5,7 +5,7 @@ use super::link::{Board, Emulated};
 use super::machines::Machine;
 use super::measure::TargetError;
 use super::results::LoopRow;
-use super::tape::{Recording, Tape, Tick};
+use super::tick_log::{Recording, Tick, TickLog};
 use crate::machines::plants::{RATES_HZ, plants};
 use crate::machines::tuned_gains::stored;
 use crate::overloads::catalogue::cases;
@@ -57,25 +57,25 @@ fn scenes() -> Result<Vec<(String, Scene, Config)>, TargetError> {
         .collect()
 }
 
-/// What came of a run.
+/// Outcome of a run.
 struct Ran {
-    tape: Vec<Tick>,
+    log: Vec<Tick>,
     figures: Figures,
     trace: Trace,
 }
 
 fn ran(scene: &Scene, supervisor: Box<dyn Supervise>) -> Result<Ran, RunError> {
-    let tape = Tape::default();
+    let log = TickLog::default();
     let recording = Recording {
         supervisor,
-        tape: Rc::clone(&tape),
+        log: Rc::clone(&log),
     };
     let policy = "supervisor";
     let acting = supervised(scene, Box::new(recording));
     let acting = acting.ok_or(RunError::Incomplete { policy })?;
     let (figures, trace) = run_policy(scene, (acting, policy), Keep::Trace, &mut |_| {})?;
     Ok(Ran {
-        tape: tape.take(),
+        log: log.take(),
         figures,
         trace,
     })
@@ -109,15 +109,15 @@ pub(crate) fn in_the_loop(
             return Err(why.into());
         }
         let emulated = emulated?;
-        let pairs = alone.tape.iter().zip(&emulated.tape);
+        let pairs = alone.log.iter().zip(&emulated.log);
         rows.push(LoopRow {
             name: machine.name,
             number: machine.number.name(),
             scene: name,
-            ticks: alone.tape.len() as u64,
+            ticks: alone.log.len() as u64,
             bit_exact_ticks: pairs.filter(|(a, b)| a == b).count() as u64,
             same_plant: alone.trace == emulated.trace && alone.figures == emulated.figures,
-            ticks_per_s: emulated.tape.len() as f64 / took_s,
+            ticks_per_s: emulated.log.len() as f64 / took_s,
         });
     }
     if let Some(board) = Rc::into_inner(board) {

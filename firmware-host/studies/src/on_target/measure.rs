@@ -121,7 +121,7 @@ fn row_of(stream: &Stream) -> StreamRow {
 }
 
 /// What an image printed under a name.
-fn said<'a>(
+fn printed<'a>(
     lines: &'a BTreeMap<String, String>,
     (image, machine): (&'static str, &Machine),
     name: &'static str,
@@ -140,7 +140,7 @@ fn number(
     name: &'static str,
 ) -> Result<u64, EmulatorError> {
     let (image, machine) = of;
-    (said(lines, of, name)?.parse()).map_err(|_| EmulatorError::Silent {
+    (printed(lines, of, name)?.parse()).map_err(|_| EmulatorError::Silent {
         image,
         machine: machine.name,
         name,
@@ -299,7 +299,7 @@ fn replay(
     Ok(Replayed {
         ticks: number(&lines, replay, "ticks")?,
         bit_exact_ticks: number(&lines, replay, "bit_exact_ticks")?,
-        hash: said(&lines, replay, "hash")?.clone(),
-        read_outs: said(&lines, replay, "read_outs")?.clone(),
+        hash: printed(&lines, replay, "hash")?.clone(),
+        read_outs: printed(&lines, replay, "read_outs")?.clone(),
     })
 }

@@ -1,6 +1,6 @@
 //! The numbers that a supervisor under test calculates in, and recorders of its ticks.
 
-use super::tape::{Recording, Tape, Tick};
+use super::tick_log::{Recording, Tick, TickLog};
 use firmware_bench::run::controller::Supervise;
 use firmware_image::under_test::{Fixed, Float, Ticked, UnderTest};
 use firmware_image::wire::core_sample_bits;
@@ -41,32 +41,32 @@ impl Number {
         }
     }
 
-    /// A new supervisor that writes its ticks to a tape; `None` where none [`Self::fits`].
-    pub fn recorder(self, config: &Config, tape: &Tape) -> Option<Box<dyn Supervise>> {
-        let tape = Rc::clone(tape);
+    /// A new supervisor that writes its ticks to a log; `None` where none [`Self::fits`].
+    pub fn recorder(self, config: &Config, log: &TickLog) -> Option<Box<dyn Supervise>> {
+        let log = Rc::clone(log);
         Some(match self {
             Self::Float => Box::new(Recording {
                 supervisor: Box::new(Float::new(config).ok()?),
-                tape,
+                log,
             }),
             Self::Fixed => Box::new(RecordingFixed {
                 scaling: config.scaling(),
                 core: <Fixed as Ticked>::new(config)?,
-                tape,
+                log,
             }),
         })
     }
 }
 
-/// Fastest spin that `Q` is told \[1/t₀\].
+/// Fastest spin that `Q` is given \[1/t₀\].
 const FASTEST: f32 = 500.0;
 
-/// The core in fixed point behind a conversion, with a tape of what passes between them.
+/// The core in fixed point behind a conversion, with a log of what passes between them.
 #[derive(Debug)]
 struct RecordingFixed {
     scaling: Scaling,
     core: Fixed,
-    tape: Tape,
+    log: TickLog,
 }
 
 /// What `Q` does not hold keeps its bits and becomes some number: a converter of real firmware has no NaN either, and
@@ -93,7 +93,7 @@ impl Supervise for RecordingFixed {
         };
         let command = self.core.tick(&sample);
         let tick = Tick::new(&core_sample_bits(&sample), &Fixed::bits(&command));
-        self.tape.borrow_mut().push(tick);
+        self.log.borrow_mut().push(tick);
         scaling.command(&command)
     }
 }

@@ -1,18 +1,18 @@
-//! Recorded streams: what a supervisor was told on the host, and what it commanded.
+//! Recorded streams: inputs of a supervisor on the host, and what it commanded.
 
 use super::closed_loops::closed_loops;
 use super::coverage::Coverage;
-use super::made_up::made_up;
 use super::numbers::Number;
-use super::tape::Piece;
+use super::synthetic;
+use super::tick_log::Piece;
 use crate::overloads::plan::CatalogueError;
 use firmware_image::under_test::{Fixed, Float, UnderTest};
 use firmware_image::wire::{
-    HEADER_BYTES, Hash, Header, SEGMENT_BYTES, Segment, put_header, put_segment, sample_of,
+    HEADER_BYTES, Hash, Header, SEGMENT_BYTES, Segment, encode_header, encode_segment, sample_of,
 };
 use std::io::{self, Write};
 
-/// How a stream is made up.
+/// What a stream consists of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Length {
     /// Ticks of closed loops, at most.
@@ -48,7 +48,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// Records closed loops of the catalogue, and then samples that are made up. The same for the same
+    /// Records closed loops of the catalogue, and then synthetic samples. The same for the same
     /// length.
     ///
     /// # Errors
@@ -56,12 +56,13 @@ impl Stream {
     pub fn record(number: Number, length: Length) -> Result<Self, CatalogueError> {
         let (mut pieces, loops_left_out) = closed_loops(number, length.closed_loop)?;
         let so_far: usize = pieces.iter().map(|p| p.ticks.len()).sum();
-        let (more, made_up_left_out) = made_up(number, length.all.saturating_sub(so_far))?;
+        let (more, synthetic_left_out) =
+            synthetic::pieces(number, length.all.saturating_sub(so_far))?;
         pieces.extend(more);
         Ok(Self {
             number,
             pieces,
-            left_out: loops_left_out + made_up_left_out,
+            left_out: loops_left_out + synthetic_left_out,
         })
     }
 
@@ -103,7 +104,7 @@ impl Stream {
         let mut to = io::BufWriter::new(to);
         let mut header = [0; HEADER_BYTES];
         let segments = self.pieces.len() as u32;
-        put_header(Header { segments }, &mut header);
+        encode_header(Header { segments }, &mut header);
         to.write_all(&header)?;
         let mut segment = [0; SEGMENT_BYTES];
         for piece in &self.pieces {
@@ -111,7 +112,7 @@ impl Stream {
                 config: piece.config,
                 ticks: piece.ticks.len() as u32,
             };
-            put_segment(&begin, &mut segment);
+            encode_segment(&begin, &mut segment);
             to.write_all(&segment)?;
             for tick in &piece.ticks {
                 to.write_all(&tick.sample)?;

@@ -44,7 +44,7 @@ pub struct TargetRow {
     pub budgets: Vec<Verdict>,
 }
 
-/// What came of a replay.
+/// Outcome of a replay.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Replayed {
     /// Ticks that were replayed.

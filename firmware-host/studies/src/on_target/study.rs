@@ -38,7 +38,7 @@ pub fn run_on(
     wanted: Wanted,
     progress: &dyn Progress,
 ) -> Result<Report, TargetError> {
-    // What is missing is told before anything takes its time.
+    // What is missing is reported before anything takes its time.
     let qemu = emulator::version()?;
     let project = Project::around(folder)?;
     Budgets::load(&project.budgets())?;

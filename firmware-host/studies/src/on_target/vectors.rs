@@ -1,11 +1,11 @@
-//! Streams as text, for a port to a processor that Rust has no target for: what a supervisor is told and what it has to command.
+//! Streams as text, for a port to a processor that Rust has no target for: inputs of a supervisor and what it has to command.
 
 use super::record::Stream;
 use firmware_image::wire::{command_of, sample_of};
 use std::io::{self, BufWriter, Write};
 use supervisor::PARAMETERS;
 
-/// Columns of a tick: first what the supervisor is told; from `force_x` on what it has to command.
+/// Columns of a tick: first the supervisor's inputs; from `force_x` on what it has to command.
 pub(crate) const TICK_COLUMNS: [&str; 19] = [
     "piece",
     "sequence",

@@ -4,11 +4,11 @@ use super::counts::ticks_of;
 use super::emulator;
 use super::images::Project;
 use super::machines::{MACHINES, Machine};
-use super::made_up::{Chance, made_up_by};
 use super::measure::{TargetError, count_words};
 use super::numbers::Number;
 use super::record::{Length, Stream};
-use super::tape::{Piece, Tick};
+use super::synthetic::{Chance, seeded};
+use super::tick_log::{Piece, Tick};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError};
 use firmware_image::wire::{CommandBits, SampleBits, mode_of, sample_of};
 use std::path::Path;
@@ -27,7 +27,7 @@ const CHANGED: usize = 24;
 /// A round takes some seconds; more only where the emulator hangs.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// A tick that costs much, with all that was told before it.
+/// A tick that costs much, with all inputs before it.
 #[derive(Debug, Clone)]
 struct Dear {
     instructions: u32,
@@ -57,7 +57,7 @@ impl Search {
         self.rounds += 1;
         let first = self.kept.is_empty();
         let new = if first { ROUND_TICKS } else { NEW_TICKS };
-        let (mut pieces, _) = made_up_by(1000 + self.rounds, Number::Float, new)?;
+        let (mut pieces, _) = seeded(1000 + self.rounds, Number::Float, new)?;
         let mut left = ROUND_TICKS.saturating_sub(new);
         while left > 0 && !first {
             let child = self.child();

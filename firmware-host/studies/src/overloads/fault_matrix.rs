@@ -82,7 +82,7 @@ fn faults(clearance_m: f64, period_s: f64) -> Vec<(String, FaultKind, Axis, f64)
     all
 }
 
-/// Drives that do not do what they are told, and which nobody knows of: name, what they do instead, axis.
+/// Drives that do not do what is commanded, and which nobody knows of: name, what they do instead, axis.
 const DRIVES: [(&str, Delivers, Axis); 6] = [
     ("dead along x", Delivers::Nothing, Axis::X),
     ("dead along y", Delivers::Nothing, Axis::Y),

@@ -58,9 +58,10 @@ pub fn report(catalogue: &Catalogue, extent: Extent) -> Report {
 
 /// All of them in one line for each group of scenes, and those that differ one by one.
 fn against_alone(harms: &[Harm]) -> Vec<Block> {
-    let (told, same): (Vec<&Harm>, Vec<&Harm>) = harms.iter().partition(|h| is_worth_telling(h));
+    let (differing, same): (Vec<&Harm>, Vec<&Harm>) =
+        harms.iter().partition(|h| is_worth_telling(h));
     let groups_are = "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Each place and scene has the median over its seeds; here are the median and the 95th percentile of these in each group, and in how many the supervisor recovers from fewer seeds, beyond chance, and from more.";
-    let told_are = format!(
+    let differing_are = format!(
         "Recovered: seeds with and without the supervisor. Of {} places and scenes these are the ones where the supervisor recovers from more or fewer, or where the force is more than 2 % higher; in the other {} it recovers from as many and the force is the same or lower. All of them are in `overloads.json`.",
         harms.len(),
         same.len()
@@ -77,10 +78,10 @@ fn against_alone(harms: &[Harm]) -> Vec<Block> {
     vec![
         Block::text(groups_are.to_owned()),
         Block::table(GROUP_COLUMNS, groups(harms).iter().map(Group::cells)),
-        Block::text(told_are),
+        Block::text(differing_are),
         Block::table(
             ["plant, rate: scene", "median", "95 %", "recovered", "alone"],
-            told.into_iter().map(line),
+            differing.into_iter().map(line),
         ),
     ]
 }

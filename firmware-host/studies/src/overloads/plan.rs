@@ -87,7 +87,7 @@ fn with_at_least<S: Serializer>(claims: &[Claim], to: S) -> Result<S::Ok, S::Err
 }
 
 /// A plant at one control rate, with what is kept for it and what happens to it.
-struct Place {
+struct Site {
     plant: PlantCase,
     found: TunedGains,
     cases: Vec<Case>,
@@ -95,12 +95,12 @@ struct Place {
 
 /// A run of the plan.
 enum Job<'a> {
-    Case(&'a Place, &'a Case, Contender, u64),
+    Case(&'a Site, &'a Case, Contender, u64),
     Own(&'a Scene, PolicyKind, u64),
 }
 
 /// A sweep of the plan: place, contender, seed.
-type SweepJob<'a> = (&'a Place, Contender, u64);
+type SweepJob<'a> = (&'a Site, Contender, u64);
 
 /// A sweep takes about as long as so many runs.
 const SWEEP_WORTH: u64 = 40;
@@ -108,7 +108,7 @@ const SWEEP_WORTH: u64 = 40;
 /// What will be run: the catalogue in an extent, and a user's own scenes with it.
 pub struct Plan {
     extent: Extent,
-    places: Vec<Place>,
+    places: Vec<Site>,
     own: Vec<Scene>,
 }
 
@@ -126,7 +126,7 @@ impl Plan {
                         plant: plant.name.clone(),
                         rate_hz,
                     })?;
-                places.push(Place {
+                places.push(Site {
                     cases: cases(&plant, found.tuned),
                     plant,
                     found,
@@ -192,7 +192,7 @@ impl Plan {
         progress.begin(pieces, "the catalogue");
         let results: Vec<ResultRow> = each(&self.jobs(), |job| {
             let row = match job {
-                Job::Case(Place { plant, found, .. }, case, contender, seed) => run_case(
+                Job::Case(Site { plant, found, .. }, case, contender, seed) => run_case(
                     case,
                     (&plant.name, plant.rate_hz),
                     (*contender, *seed),
@@ -221,7 +221,7 @@ impl Plan {
     fn sweeps(&self, progress: &dyn Progress) -> Result<Vec<SweepRow>, CatalogueError> {
         let points = each(
             &self.sweep_jobs(),
-            |(Place { plant, found, .. }, contender, seed)| {
+            |(Site { plant, found, .. }, contender, seed)| {
                 let point = sweep(plant, found, (*contender, *seed)).map_err(|reason| {
                     CatalogueError::Run {
                         plant: plant.name.clone(),

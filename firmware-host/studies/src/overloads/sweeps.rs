@@ -20,7 +20,7 @@ pub struct SweepRow {
     pub policy: &'static str,
     /// Hardest radial impact recovered from \[m/s\], one a seed, in order of size.
     pub impact_m_s: Vec<f64>,
-    /// The same with the bearing 10 % of the clearance off the centre, untold.
+    /// The same with the bearing 10 % of the clearance off the centre, not configured.
     pub offset_impact_m_s: Vec<f64>,
     /// Fastest whirl recovered from at take-over, as a share of v_lim, one a seed, in order of size.
     pub whirl_share: Vec<f64>,

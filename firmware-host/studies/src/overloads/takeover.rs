@@ -12,7 +12,7 @@ use plant_model::machine::params::MachineStart;
 /// start's.
 pub(crate) const ARRESTED: f64 = 0.25;
 
-/// What came of a take-over.
+/// Outcome of a take-over.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TakeOver {
     /// Back in the middle in the end.

@@ -1,7 +1,7 @@
 //! Classes of machines.
 
 use super::written_events::{Measures, Whole};
-use crate::machines::drawn::Machine;
+use crate::machines::random::RandomMachine;
 use crate::machines::rotors::{Class, RotorCase};
 
 /// A class of machines.
@@ -17,9 +17,9 @@ pub enum MachineClass {
 
 /// A machine of a number.
 #[derive(Debug, Clone)]
-pub enum Drawn {
+pub enum Model {
     /// In one plane.
-    PointMass(Box<Machine>),
+    PointMass(Box<RandomMachine>),
     /// In two.
     Rotor(Box<RotorCase>),
 }
@@ -38,18 +38,18 @@ impl MachineClass {
     ///
     /// # Errors
     /// A machine that is no valid scene: a mistake of the draw.
-    pub fn machine(self, seed: u64, number: u64) -> Result<Drawn, String> {
-        let of = |machine: Machine| Drawn::PointMass(Box::new(machine));
+    pub fn machine(self, seed: u64, number: u64) -> Result<Model, String> {
+        let of = |machine: RandomMachine| Model::PointMass(Box::new(machine));
         match self {
-            Self::PointMass => Machine::drawn(seed, number).map(of),
-            Self::ResilientMount => Machine::resilient(seed, number).map(of),
-            Self::Rotor(class) => Ok(Drawn::Rotor(Box::new(RotorCase::new(seed, class, number)))),
+            Self::PointMass => RandomMachine::sampled(seed, number).map(of),
+            Self::ResilientMount => RandomMachine::resilient(seed, number).map(of),
+            Self::Rotor(class) => Ok(Model::Rotor(Box::new(RotorCase::new(seed, class, number)))),
         }
         .map_err(|error| error.to_string())
     }
 }
 
-impl Drawn {
+impl Model {
     /// Its scene file, in which nothing happens.
     pub fn toml(&self) -> String {
         match self {

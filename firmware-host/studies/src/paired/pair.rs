@@ -1,6 +1,6 @@
 //! A scene under levitation alone, and with the supervisor in front of it.
 
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome as Ending;
 use firmware_bench::run::trace::{Recorder, TraceRow};
@@ -98,14 +98,14 @@ struct Counter {
 
 impl Recorder for Counter {
     fn row(&mut self, row: &TraceRow) {
-        let Some(said) = row.supervisor.filter(|_| !row.mode_change) else {
+        let Some(trace) = row.supervisor.filter(|_| !row.mode_change) else {
             return;
         };
         let counted = &mut self.counted;
         counted.run_s += self.period_s;
-        counted.engagements += u64::from(said.events.contains(Events::ENGAGED));
-        counted.handed_back += u64::from(said.events.contains(Events::HANDED_BACK));
-        if said.mode.is_engaged() {
+        counted.engagements += u64::from(trace.events.contains(Events::ENGAGED));
+        counted.handed_back += u64::from(trace.events.contains(Events::HANDED_BACK));
+        if trace.mode.is_engaged() {
             counted.engaged_s += self.period_s;
             self.running_s += self.period_s;
             counted.longest_s = counted.longest_s.max(self.running_s);
@@ -196,7 +196,7 @@ fn run(scene: &Scene, kind: PolicyKind, goal: Goal) -> Result<(Outcome, Engaged)
     };
     let mut counters: Vec<Counter> = scene.planes.iter().map(counter).collect();
     let recorders = Recorders::of_planes(&mut counters);
-    let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {})
+    let ended = record(scene, kind, recorders, Accuracy::default(), &mut |_| {})
         .map_err(|error| error.to_string())?;
     let engaged = (counters.iter()).fold(Engaged::default(), |sum, c| sum.and(&c.counted));
     let planes: Vec<Figures> = ended.into_iter().map(|(figures, _)| figures).collect();

@@ -2,7 +2,7 @@
 
 use super::configured::{AS_IT_IS, Configured};
 use super::events::{BEGIN_S, Event, Point, Written};
-use super::machines::{Drawn, MachineClass};
+use super::machines::{MachineClass, Model};
 use super::pair::{Goal, HOLDS_S, NoPair, Tried, is_held, pair, remark};
 use super::row::{ClassName, Row};
 use super::sensors::Sensors;
@@ -103,12 +103,12 @@ impl Class {
         let noise = draw.number();
         let (mut scene, goal) = match (self.event, &machine) {
             (Event::Written(event), _) => written(&machine, event, &mut draw)?,
-            (Event::Point(event), Drawn::PointMass(machine)) => {
+            (Event::Point(event), Model::PointMass(machine)) => {
                 let mut scene = machine.scene.clone();
                 event.happen(machine, &mut draw, &mut scene);
                 (scene, Goal::Free)
             }
-            (Event::Point(_), Drawn::Rotor(_)) => return Err("event of a point mass".to_owned()),
+            (Event::Point(_), Model::Rotor(_)) => return Err("event of a point mass".to_owned()),
         };
         scene.title = format!("{}, {}", self.name().text(false), machine.text());
         self.configured.apply_to_all(&mut scene);
@@ -128,7 +128,7 @@ impl Class {
 const OF_EVENTS: u64 = 0x5eed;
 
 /// The scene of a machine with an event that is written as keys.
-fn written(machine: &Drawn, event: Written, draw: &mut Draw) -> Result<(Scene, Goal), String> {
+fn written(machine: &Model, event: Written, draw: &mut Draw) -> Result<(Scene, Goal), String> {
     let measures = machine.measures();
     let keys = event.keys(&measures, draw);
     let error = |error: firmware_bench::scene::diagnostic::SceneError| error.to_string();

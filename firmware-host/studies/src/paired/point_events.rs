@@ -2,7 +2,7 @@
 
 use super::written_events::BEGIN_S;
 use crate::machines::draw::Draw;
-use crate::machines::drawn::Machine;
+use crate::machines::random::RandomMachine;
 use crate::overloads::takeover::{arrest_of, let_whirl};
 use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape};
 use firmware_bench::scene::Scene;
@@ -61,7 +61,7 @@ impl Point {
     }
 
     /// Lets it happen, as large as is drawn.
-    pub fn happen(self, machine: &Machine, draw: &mut Draw, scene: &mut Scene) {
+    pub fn happen(self, machine: &RandomMachine, draw: &mut Draw, scene: &mut Scene) {
         let unit = machine.unit_m_s();
         scene.duration_s = BEGIN_S + AFTER_S;
         let angle = draw.angle_rad();
@@ -142,7 +142,7 @@ impl Point {
 }
 
 /// A change of speed within two fifths of √(m·c/F): no hammer, whose blow would be over between two samples.
-fn push(machine: &Machine, change_m_s: V2) -> Disturbance {
+fn push(machine: &RandomMachine, change_m_s: V2) -> Disturbance {
     let duration_s = 0.4 * machine.unit_s();
     Disturbance {
         start_s: BEGIN_S,

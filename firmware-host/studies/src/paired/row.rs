@@ -44,7 +44,7 @@ impl Shares {
     }
 }
 
-/// What came of the pairs of a class; forces and impulses are those with the supervisor over those of levitation alone.
+/// Outcome of the pairs of a class; forces and impulses are those with the supervisor over those of levitation alone.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Row {
     /// Which class.

@@ -77,7 +77,7 @@ impl Rubs {
     }
 }
 
-/// What came of machines with unbalance.
+/// Outcome of machines with unbalance.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
     free: u64,

@@ -81,7 +81,7 @@ pub enum Written {
     SetDown {
         /// Whether it turns, with 2 to 20 Hz.
         spins: bool,
-        /// Whether the supervisor is told.
+        /// Whether the supervisor is informed.
         announced: bool,
     },
     /// A rotor at rest on its retainer bearing is lifted from the first tick on.

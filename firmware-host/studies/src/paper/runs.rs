@@ -3,7 +3,7 @@
 use super::data::*;
 use plant_model::analysis::course::{Course, Watch, follow};
 use plant_model::params::{SpinParams, Start};
-use plant_model::{Inputs, Meters, Mode, Options, V2, build};
+use plant_model::{ContactMode, Inputs, Meters, Options, V2, build};
 
 /// Radial speed at the wall that starts the whirl \[m/s\].
 pub(super) const IMPACT_M_S: f64 = 0.4;
@@ -163,6 +163,6 @@ pub(super) fn settled(params: &PlantParams) -> Result<Settled> {
     Ok(Settled {
         whirl_hz: (before - after) / TAU / (0.1 * END_S),
         normal_force_n: now.normal_force_n,
-        rolls: now.mode == Mode::Roll,
+        rolls: now.mode == ContactMode::Roll,
     })
 }

@@ -2,8 +2,8 @@
 
 use super::{configured_right, misjudged};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
-use crate::machines::drawn::Machine;
 use crate::machines::plants::plants;
+use crate::machines::random::RandomMachine;
 use crate::machines::tuned_gains::stored;
 use crate::overloads::contenders::Contender;
 use crate::overloads::results::ResultRow;
@@ -15,7 +15,7 @@ const SEED: u64 = 1;
 /// AssumedMachine less force than there is, the supervisor uses less: no error of judgement.
 const LESS_FORCE: &str = "force cap × 0.8";
 
-/// What came of the trials with something configured wrong.
+/// Outcome of the trials with something configured wrong.
 #[derive(Debug, Clone)]
 pub struct ConfiguredWrong {
     /// What is configured wrong.
@@ -75,7 +75,7 @@ fn force_n(row: &ResultRow) -> f64 {
     (row.metrics.as_ref()).map_or(f64::NAN, |m| m.peak_contact_force_n)
 }
 
-/// What came of trials configured wrong in every way of a width.
+/// Outcome of trials configured wrong in every way of a width.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Recovered with levitation alone.
@@ -143,7 +143,7 @@ pub fn of_the_catalogue(name: &str) -> Result<Vec<Trial>, StudyError> {
 
 fn of_unseen_machines(count: u64) -> Result<Vec<Trial>, StudyError> {
     let machines = (0..count)
-        .map(Machine::unseen)
+        .map(RandomMachine::unseen)
         .collect::<Result<Vec<_>, _>>()?;
     Ok(machines
         .iter()

@@ -142,11 +142,11 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named() {
-        let said = |text: &str| Record::parse(text).unwrap_err().message;
-        assert_eq!(said(""), "no column time_s");
-        assert_eq!(said(&HEAD.replace("disc_x_m", "x")), "no column disc_x_m");
-        assert_eq!(said(HEAD), "no rows");
-        let row = |text: &str| said(&format!("{HEAD}0,7,1,0,0\n{text}\n0.002,7,1,0,0\n"));
+        let error = |text: &str| Record::parse(text).unwrap_err().message;
+        assert_eq!(error(""), "no column time_s");
+        assert_eq!(error(&HEAD.replace("disc_x_m", "x")), "no column disc_x_m");
+        assert_eq!(error(HEAD), "no rows");
+        let row = |text: &str| error(&format!("{HEAD}0,7,1,0,0\n{text}\n0.002,7,1,0,0\n"));
         assert_eq!(
             row("0.001,7,one,0,0"),
             "line 3: exciter_force_x_n is \"one\""
@@ -158,6 +158,6 @@ mod tests {
         assert_eq!(row("0.001,7,1,0"), "line 3: disc_y_m is \"\"");
         let uneven = row("0.0015,7,1,0,0");
         assert_eq!(uneven, "line 3: time_s is 0.0015, not one sample on");
-        assert!(said(&format!("{HEAD}0,7,1,0,0\n")).contains("not one sample on"));
+        assert!(error(&format!("{HEAD}0,7,1,0,0\n")).contains("not one sample on"));
     }
 }

@@ -7,7 +7,7 @@ use super::fit::fitted;
 use super::record::Record;
 use crate::campaign::StudyError;
 use firmware_bench::device::loads::{Disturbance, Shape};
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::trace::{AxisRow, Recorder};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -285,8 +285,8 @@ impl Rig {
             planes: Vec::new(),
             axis: Some(&mut tilt),
         };
-        let (passive, rigour) = (PolicyKind::Passive, Rigour::default());
-        let ended = record(&scene, passive, recorders, rigour, &mut |_| {})?;
+        let (passive, accuracy) = (PolicyKind::Passive, Accuracy::default());
+        let ended = record(&scene, passive, recorders, accuracy, &mut |_| {})?;
         let (figures, _) = ended.first().ok_or("a scene without planes")?;
         let Tilts(mut tilt) = tilt;
         tilt.truncate(samples);
@@ -410,7 +410,7 @@ impl Rig {
     /// As [`Self::run`].
     pub fn touch(&self, of: &Record, begin: &Flight, impact: &Impact) -> Result<Touch, StudyError> {
         let [before, after] = impact.normal_m_s;
-        let told = Touch {
+        let touch = Touch {
             stiffness_n_m: self.stiffness_n_m(impact),
             restitution: -after / before,
             clearance_m: impact.clearance_m,
@@ -418,7 +418,7 @@ impl Rig {
             law: None,
         };
         let [.., size_m] = Touch::SIZES;
-        self.nearest(of, begin, (&told, [0.0, 0.0, size_m]))
+        self.nearest(of, begin, (&touch, [0.0, 0.0, size_m]))
     }
 
     /// The contact with which a flight about an impact is nearest to the record, all three numbers at once.
@@ -448,9 +448,9 @@ impl Rig {
             ..*near
         };
         let ([a, b, c, d, ..], [sa, sb, sc, sd, ..]) = (begin.numbers(), Flight::SIZES);
-        let told = [near.stiffness_n_m, near.restitution, near.clearance_m];
+        let best = [near.stiffness_n_m, near.restitution, near.clearance_m];
         let [.., stiffness_n_m, restitution, clearance_m] = fitted(
-            [a, b, c, d, told[0], told[1], told[2]],
+            [a, b, c, d, best[0], best[1], best[2]],
             [sa, sb, sc, sd, size_n_m, size, size_m],
             |&[a, b, c, d, stiffness_n_m, restitution, clearance_m]| {
                 let touch = with(stiffness_n_m, restitution, clearance_m);

@@ -59,7 +59,7 @@ pub enum Incident {
     Conical(u32),
     /// A blow with runout of both sensors of so many percent of the clearance, against each other.
     Runout(u32),
-    /// A blow with both retainers off the centre by so many percent of the clearance, against each other, untold.
+    /// A blow with both retainers off the centre by so many percent of the clearance, against each other, not configured.
     Misaligned(u32),
     /// The spin falls through the criticals of the levitated rotor with an unbalance at the first plane.
     SpinDown,
@@ -306,7 +306,7 @@ fn shaken(mut scene: Scene, motion: &BaseMotion) -> Scene {
     scene
 }
 
-/// Lies across the axis in the earth's field, each magnet told to carry its share.
+/// Lies across the axis in the earth's field, each magnet configured to carry its share.
 fn with_weight(mut scene: Scene) -> Scene {
     let gravity_m_s2 = V2::new(0.0, -G_M_S2);
     scene.machine.gravity_m_s2 = gravity_m_s2;

@@ -5,7 +5,7 @@ use super::hardest::{hardest_from_m_s, hardest_m_s};
 use super::plants::{Blow, RotorPlant};
 use crate::campaign::Progress;
 use crate::overloads::reference::{FINE, RANGES, START, law_of, search, search_from_m_s};
-use firmware_bench::run::closed_loop::{Keep, RunError, refer};
+use firmware_bench::run::closed_loop::{Keep, RunError, run_reference};
 use firmware_bench::run::whole_clairvoyant::{WholeClairvoyantLaw, WholeReference};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
@@ -91,7 +91,7 @@ fn recovers(scene: &Scene, law: WholeClairvoyantLaw, keep: Keep) -> bool {
 }
 
 fn brings_back(scene: &Scene, reference: &WholeReference, keep: Keep) -> bool {
-    let run = refer(scene, reference, keep);
+    let run = run_reference(scene, reference, keep);
     run.is_ok_and(|planes| planes.iter().all(|figures| figures.recovered))
 }
 

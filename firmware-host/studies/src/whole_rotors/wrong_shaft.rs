@@ -1,4 +1,4 @@
-//! What it costs the catalogue's whole rotors that their supervisor is told a wrong shaft.
+//! What it costs the catalogue's whole rotors that their supervisor is configured with a wrong shaft.
 
 use super::hardest::hardest_m_s;
 use super::plants::{Blow, RotorPlant};
@@ -47,10 +47,10 @@ pub(super) fn configured_wrong(
         return Vec::new();
     };
     let one = |(name, by, change): &(&str, f64, Change)| {
-        let mut told = shaft;
-        change(&mut told, *by as f32);
+        let mut configured_shaft = shaft;
+        change(&mut configured_shaft, *by as f32);
         let mut with = plant.clone();
-        with.scene.told = Some(told);
+        with.scene.configured_shaft = Some(configured_shaft);
         let cases: Vec<_> = Blow::ALL.iter().map(|blow| (*blow, TRIED)).collect();
         let speeds = run_all(&cases, progress, |(blow, of)| {
             hardest_m_s(&with, *blow, PolicyKind::Supervisor, *of)

@@ -50,7 +50,7 @@ impl Collocation {
             touch.penetration_m = motion.penetration_m;
             touch.normal_m_s = motion.normal_m_s;
             let normal = data.law.at(motion.penetration_m, motion.normal_m_s);
-            (touch.force_n, touch.lift) = (normal.force_n, normal.guard);
+            (touch.force_n, touch.normal_guard) = (normal.force_n, normal.guard);
             (touch.by_depth_n_m, touch.by_rate_n_s_m) = (normal.by_depth_n_m, normal.by_rate_n_s_m);
             let Phase::Contact(slide, whirl) = *phase else {
                 continue;

@@ -4,7 +4,7 @@
 use super::runs::direction;
 use plant_model::machine::params::MachineParams;
 use plant_model::params::SlidingFriction;
-use plant_model::{Mode, V2};
+use plant_model::{ContactMode, V2};
 
 /// A rotor with two planes of linear contact in rigid bores, with friction that is the same at every speed, and one unbalance.
 pub(crate) struct Reference {
@@ -41,12 +41,12 @@ enum Touch {
 }
 
 impl Touch {
-    fn mode(self) -> Mode {
+    fn mode(self) -> ContactMode {
         match self {
-            Touch::Off | Touch::Beyond => Mode::Flight,
-            Touch::Roll => Mode::Roll,
-            Touch::Slip(s) if s > 0.0 => Mode::SlipPositive,
-            Touch::Slip(_) => Mode::SlipNegative,
+            Touch::Off | Touch::Beyond => ContactMode::Flight,
+            Touch::Roll => ContactMode::Roll,
+            Touch::Slip(s) if s > 0.0 => ContactMode::SlipPositive,
+            Touch::Slip(_) => ContactMode::SlipNegative,
         }
     }
 }
@@ -276,7 +276,7 @@ impl Reference {
     }
 
     /// Modes of both planes after each event, and where the rotor is at the end.
-    pub(crate) fn run(&self, start: State, end: f64, h: f64) -> (Vec<[Mode; 2]>, [V2; 2]) {
+    pub(crate) fn run(&self, start: State, end: f64, h: f64) -> (Vec<[ContactMode; 2]>, [V2; 2]) {
         let (mut t, mut y, mut touch) = (0.0, start, [Touch::Off; 2]);
         let mut changes = vec![];
         while t < end {
@@ -316,8 +316,8 @@ impl Reference {
 }
 
 /// Modes of both planes after each instant: what follows one another without time is one event.
-pub(crate) fn settled(changes: &[(f64, [Mode; 2])]) -> Vec<[Mode; 2]> {
-    let mut out: Vec<[Mode; 2]> = vec![];
+pub(crate) fn settled(changes: &[(f64, [ContactMode; 2])]) -> Vec<[ContactMode; 2]> {
+    let mut out: Vec<[ContactMode; 2]> = vec![];
     for (i, (t, modes)) in changes.iter().enumerate() {
         let last = changes.get(i + 1).is_none_or(|(next, _)| next - t > 1e-9);
         if last && out.last() != Some(modes) {

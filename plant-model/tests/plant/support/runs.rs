@@ -86,7 +86,7 @@ pub(crate) fn rotor(params: &MachineParams, start: &MachineStart, options: Optio
 
 /// Carries a rotor on without forces from outside.
 #[track_caller]
-pub(crate) fn carry_on(rotor: &mut Machine, t_s: f64) {
+pub(crate) fn advance(rotor: &mut Machine, t_s: f64) {
     let nothing = MachineInputs::default();
     rotor.advance(t_s, &nothing, &mut |_, _| {}).unwrap();
 }
@@ -94,7 +94,7 @@ pub(crate) fn carry_on(rotor: &mut Machine, t_s: f64) {
 /// The same in samples, up to a time.
 pub(crate) fn carry_sampled(rotor: &mut Machine, end_s: f64, samples: u32) {
     for i in 1..=samples {
-        carry_on(rotor, end_s * f64::from(i) / f64::from(samples));
+        advance(rotor, end_s * f64::from(i) / f64::from(samples));
     }
 }
 
@@ -123,7 +123,7 @@ pub(crate) fn carry_with(
 ) -> Snapshot {
     plant.advance(t_s, &load(external_n), on_change).unwrap();
     let now = plant.snapshot();
-    let said = [
+    let values = [
         now.position_m.norm(),
         now.velocity_m_s.norm(),
         now.inner_ring.position.norm() + now.inner_ring.velocity.norm(),
@@ -134,7 +134,7 @@ pub(crate) fn carry_with(
         plant.meters().peak_contact_force_n,
         plant.audit().turnover_j(),
     ];
-    assert!(said.iter().all(|x| x.is_finite()), "{now:?}");
+    assert!(values.iter().all(|x| x.is_finite()), "{now:?}");
     let audit = plant.audit();
     let gap_j = audit.residual() * audit.turnover_j();
     // Energy is known to round-off in the spin, of some ten thousand steps that may all round the same way.

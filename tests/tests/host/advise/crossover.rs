@@ -87,7 +87,7 @@ fn the_analysis_is_what_the_core_does() {
     }
 }
 
-/// What swings at a frequency that was told is kept apart as the analysis has it: one mode or two, close and far.
+/// What swings at a configured frequency is kept apart as the analysis has it: one mode or two, close and far.
 ///
 /// Requirement: SR-41
 #[test]
@@ -99,28 +99,28 @@ fn the_analysis_holds_with_bending_told() {
     let mut driven = 0;
     for n in [amb(), slow] {
         let rigid = engaged_for_long(&n);
-        for told_hz in [
+        for modes_hz in [
             [1300.0, 0.0],
             [0.0, 1300.0],
             [900.0, 2000.0],
             [1200.0, 1300.0],
         ] {
             let mut config = rigid;
-            [config.bending_first_hz, config.bending_second_hz] = told_hz;
+            [config.bending_first_hz, config.bending_second_hz] = modes_hz;
             assert!(
-                told_hz.iter().any(|hz| config.keeps_apart(*hz)),
-                "{told_hz:?}"
+                modes_hz.iter().any(|hz| config.keeps_apart(*hz)),
+                "{modes_hz:?}"
             );
             let apart = largest_difference(&config, after_a_touch, Mode::Bounce);
-            assert!(apart < 0.01, "{told_hz:?}, {apart}: {n:?}");
+            assert!(apart < 0.01, "{modes_hz:?}, {apart}: {n:?}");
             // Near where it was driven most it is hardly felt, or damped.
-            let hz = f64::from(told_hz[0].max(told_hz[1]));
+            let hz = f64::from(modes_hz[0].max(modes_hz[1]));
             let [before, now] =
                 [&rigid, &config].map(|config| measured(config, after_a_touch, whole(hz), None).0);
             let most = SmallSignals::new(&rigid).crossover().unwrap().driving_n_s_m;
             if before < -0.5 * most {
                 driven += 1;
-                assert!(now > before / 3.0, "{told_hz:?}: {before}, {now}");
+                assert!(now > before / 3.0, "{modes_hz:?}: {before}, {now}");
             }
         }
     }
@@ -133,12 +133,12 @@ fn what_cannot_be_kept_apart_has_no_effect() {
     let rigid = engaged_for_long(&amb());
     for hz in [0.0, 100.0, 500.0, 9_950.0, 1e5] {
         assert!(!rigid.keeps_apart(hz), "{hz}");
-        let told = Config {
+        let configured = Config {
             bending_first_hz: hz,
             ..rigid
         };
         let [before, now] =
-            [&rigid, &told].map(|config| measured(config, after_a_touch, 1300.0, None).0);
+            [&rigid, &configured].map(|config| measured(config, after_a_touch, 1300.0, None).0);
         assert_eq!(before.to_bits(), now.to_bits(), "{hz}");
     }
     assert!(
@@ -215,8 +215,8 @@ fn a_known_spin_moves_the_crossover_by_little() {
                 "{hz}, {spin_hz}"
             );
             let same_hz = spin_hz.abs();
-            let said = analysis.damping_n_s_m(same_hz).unwrap();
-            assert!(damping(same_hz) > 0.99 * said, "{spin_hz}: {said}");
+            let value = analysis.damping_n_s_m(same_hz).unwrap();
+            assert!(damping(same_hz) > 0.99 * value, "{spin_hz}: {value}");
         }
     }
 }

@@ -122,12 +122,12 @@ fn a_short_listing_makes_the_same_configuration() {
     let plant = plant.to_str().unwrap();
     let noisy = [&AMB[..9], &["--noise-rms-m=2e-7", "--quantum-m=3e-6"]].concat();
     for args in [&AMB[..], &noisy, &[plant], &[path.to_str().unwrap()]] {
-        let said = |more: &[&str]| {
+        let printed = |more: &[&str]| {
             let output = advise(&[args, &["--format", "rust"], more].concat());
             assert!(output.status.success(), "{}", stderr(&output));
             String::from_utf8(output.stdout).unwrap()
         };
-        let (all, short) = (said(&[]), said(&["--short"]));
+        let (all, short) = (printed(&[]), printed(&["--short"]));
         assert!(all.is_ascii() && short.is_ascii(), "{all}\n{short}");
         let made = first_configuration(&short);
         let made: Vec<(String, f32)> = (PARAMETERS.iter().zip(made.values()))
@@ -153,15 +153,15 @@ fn a_listing_has_what_the_scene_sets() {
         ("c", "0.625f,           /* AMB_P_HOLD_SHARE: "),
     ] {
         let output = advise(&[path.to_str().unwrap(), "--format", language]);
-        let said = stderr(&output);
+        let printed = stderr(&output);
         let text = String::from_utf8(output.stdout).unwrap();
         assert!(
             text.contains(line) && text.contains("suggested 0.8"),
             "{text}"
         );
         assert!(
-            !text.contains("lag_drives") && said.contains("warning: lag_drives"),
-            "{said}"
+            !text.contains("lag_drives") && printed.contains("warning: lag_drives"),
+            "{printed}"
         );
     }
 }

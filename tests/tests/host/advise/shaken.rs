@@ -1,4 +1,4 @@
-//! The core on a reading that vibrates whatever the force does, behind the amplifier that it is told of.
+//! The core on a reading that vibrates whatever the force does, behind the amplifier that it is configured with.
 
 use firmware_bench::scene::suggest::{Nominal, suggested};
 use nalgebra::Complex;

@@ -87,7 +87,7 @@ fn at_spin(spin_hz: f64) -> Nominal {
 
 /// In which mode the core, after 0.2 s of a runout of this amplitude \[clearances\], takes over from a rotor that is led onto
 /// the wall, if it does; and that it has not done so before.
-fn takes_over(n: &Nominal, amplitude: f64, told: bool) -> Option<Mode> {
+fn takes_over(n: &Nominal, amplitude: f64, valid: bool) -> Option<Mode> {
     let config = suggested(n).config;
     let unit_s = f64::from(config.scaling().time_s);
     let spin = TAU * n.spin_hz.unwrap();
@@ -98,7 +98,7 @@ fn takes_over(n: &Nominal, amplitude: f64, told: bool) -> Option<Mode> {
         let way = grown * amplitude * (spin * at_s).sin();
         // A coordinate that stands still is a stuck sensor.
         let dither = if i.is_multiple_of(2) { 1e-9 } else { -1e-9 };
-        let known = if told {
+        let known = if valid {
             Status::SPIN_VALID
         } else {
             Status::empty()
@@ -116,7 +116,7 @@ fn takes_over(n: &Nominal, amplitude: f64, told: bool) -> Option<Mode> {
     };
     let rest = (0.2 * n.sample_rate_hz) as u32;
     for i in 0..rest {
-        assert_eq!(tick(i, 0.0), Mode::Levitated, "{amplitude}, {told}, {n:?}");
+        assert_eq!(tick(i, 0.0), Mode::Levitated, "{amplitude}, {valid}, {n:?}");
     }
     let out = (2.0 * unit_s * n.sample_rate_hz) as u32;
     let mut led = (1..=2 * out).map(|i| tick(rest + i, (f64::from(i) / f64::from(out)).min(1.03)));
@@ -136,10 +136,10 @@ fn a_runout_below_the_limit_leaves_the_help() {
                     ..at_spin(spin_hz)
                 };
                 let limit = advice(&n).vibration.runout_limit_m.unwrap() / n.clearance_m;
-                for told in [false, true] {
-                    let mode = takes_over(&n, 0.7 * limit, told);
+                for valid in [false, true] {
+                    let mode = takes_over(&n, 0.7 * limit, valid);
                     let early = matches!(mode, Some(Mode::Approach | Mode::Bounce));
-                    assert!(early, "{mode:?}, {told}, {n:?}");
+                    assert!(early, "{mode:?}, {valid}, {n:?}");
                 }
                 if spin_hz < 400.0 {
                     let mode = takes_over(&n, 1.3 * limit, false);
@@ -169,7 +169,7 @@ fn the_runout_limit_is_that_of_the_speed() {
 /// On the right side of the limit, with what to do.
 #[test]
 fn a_runout_beyond_the_limit_is_told() {
-    let told = |n: Nominal, runout_m: Option<f64>| {
+    let warn = |n: Nominal, runout_m: Option<f64>| {
         let warnings = advice(&Nominal { runout_m, ..n }).warnings;
         warnings.into_iter().find(|w| w.key == "runout")
     };
@@ -183,9 +183,9 @@ fn a_runout_beyond_the_limit_is_told() {
         (at_spin(10.0), Some(2.1e-4), true),
         (amb(), Some(1e-3), false),
     ] {
-        assert_eq!(told(n, runout_m).is_some(), expected, "{runout_m:?}, {n:?}");
+        assert_eq!(warn(n, runout_m).is_some(), expected, "{runout_m:?}, {n:?}");
     }
-    let warning = told(at_spin(200.0), Some(8e-5)).unwrap();
+    let warning = warn(at_spin(200.0), Some(8e-5)).unwrap();
     assert!(
         warning.text.contains("80.0 µm at 200.0 Hz"),
         "{}",
@@ -233,7 +233,7 @@ fn text_and_json_say_where_damping_ends() {
     );
 }
 
-/// A scene has its spin; the runout is told beside it.
+/// A scene has its spin; the runout is given beside it.
 #[test]
 fn a_runout_may_be_told_beside_a_scene() {
     let path = scene_path("overload_then_release");

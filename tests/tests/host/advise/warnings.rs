@@ -100,7 +100,7 @@ fn the_position_limit_is_below_the_rail() {
 /// A sensor that does not reach the wall, one that reaches hardly farther, and a limit beyond a rail that is far enough.
 #[test]
 fn a_sensor_that_does_not_see_the_wall_is_told() {
-    let told = |range_m: f64, limit: Option<f32>| {
+    let warn = |range_m: f64, limit: Option<f32>| {
         let nominal = Nominal {
             range_m: Some(range_m),
             ..amb()
@@ -117,9 +117,9 @@ fn a_sensor_that_does_not_see_the_wall_is_told() {
             advice.supervisor_table,
         )
     };
-    let (said, table) = told(1e-5, None);
+    let (text, table) = warn(1e-5, None);
     assert!(
-        said.unwrap()
+        text.unwrap()
             .contains("a touch is not seen; a sensor that reads beyond 0.2316 mm")
     );
     assert!(
@@ -127,14 +127,14 @@ fn a_sensor_that_does_not_see_the_wall_is_told() {
         "{table}"
     );
     assert!(
-        told(2.1e-4, None)
+        warn(2.1e-4, None)
             .0
             .unwrap()
             .contains("rail counts as a position")
     );
-    assert_eq!(told(8e-4, None).0, None);
-    let (said, _) = told(8e-4, Some(20.0));
-    assert!(said.unwrap().contains("set position_limit = 3.80"));
+    assert_eq!(warn(8e-4, None).0, None);
+    let (text, _) = warn(8e-4, Some(20.0));
+    assert!(text.unwrap().contains("set position_limit = 3.80"));
 }
 
 /// With the weight fed forward the supervisor may be given the whole cap or what the weight leaves of it; who has done the

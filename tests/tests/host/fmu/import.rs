@@ -96,8 +96,8 @@ fn traces(python: &Path, scene: &Path, out: &Path) -> Vec<PathBuf> {
     let mut run = host();
     run.arg("run").arg(scene).arg("--out").arg(out);
     let output = run.env("PATH", format!("{venv}:{path}")).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
     let trace = |policy| out.join(format!("trace_{policy}.parquet"));
     ["levitation", "supervisor"].map(trace).to_vec()
 }
@@ -112,8 +112,8 @@ fn a_controller_may_be_a_unit() {
     cc.args("-std=c99 -Wall -Wextra -Wpedantic -Werror -O2 -shared -fPIC -o".split(' '));
     let source = root().join("tests/tests/host/fmu/pid.c");
     let compiled = cc.arg(&library).arg(source).arg("-lm").output().unwrap();
-    let said = String::from_utf8_lossy(&compiled.stderr);
-    assert!(compiled.status.success(), "{said}");
+    let stderr = String::from_utf8_lossy(&compiled.stderr);
+    assert!(compiled.status.success(), "{stderr}");
     let library = fs::read(&library).unwrap();
 
     let in_python = scene_path("controllers/pid_in_python");
@@ -128,8 +128,8 @@ fn a_controller_may_be_a_unit() {
         archive(&folder.path().join("controller.fmu"), version, &library);
         let computed = traces(&python, &own, &folder.path().join(version));
         for (one, other) in expected.iter().zip(&computed) {
-            let said = checked(&python, CHECKS, &["traces", text(one), text(other)]);
-            assert!(said.contains("rows the same"), "{said}");
+            let report = checked(&python, CHECKS, &["traces", text(one), text(other)]);
+            assert!(report.contains("rows the same"), "{report}");
         }
     }
 }

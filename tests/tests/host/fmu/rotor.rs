@@ -3,7 +3,7 @@
 use super::{CHECKS, checked, text, units};
 use firmware_bench::run::closed_loop::stepwise::{Driver, Stepwise};
 use firmware_bench::run::controller::Seen;
-use firmware_bench::run::trace::Said;
+use firmware_bench::run::trace::SupervisorTrace;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
@@ -27,7 +27,7 @@ fn sample(seen: &Seen, levitation_n: [f32; 2]) -> Sample {
 }
 
 /// What firmware sees in both planes at each sample, and what the supervisor said to it.
-fn closed_loop(scene: &Scene) -> Vec<[(Seen, Said); 2]> {
+fn closed_loop(scene: &Scene) -> Vec<[(Seen, SupervisorTrace); 2]> {
     let samples = (scene.duration_s * scene.sample_rate_hz).round() as usize;
     let driver = Driver::Policy(PolicyKind::Supervisor);
     let mut stepwise = Stepwise::new(scene.clone(), driver).unwrap();
@@ -102,11 +102,11 @@ fn the_supervisor_of_a_whole_rotor_is_the_native_one() {
     let mut table = columns.concat().join(",") + "\n";
     let mut modes = Vec::new();
     for planes in &seen {
-        let samples = planes.map(|(seen, said)| sample(&seen, said.levitation_n));
+        let samples = planes.map(|(seen, trace)| sample(&seen, trace.levitation_n));
         let commands = native.tick(&samples).planes;
-        for ((_, said), command) in planes.iter().zip(&commands) {
-            // What is replayed here is what the loop was told, and what it did.
-            assert_eq!(*said, Said::new(command, said.levitation_n));
+        for ((_, trace), command) in planes.iter().zip(&commands) {
+            // What is replayed here is what the loop was given, and what it did.
+            assert_eq!(*trace, SupervisorTrace::new(command, trace.levitation_n));
             modes.push(command.mode);
         }
         let rows: Vec<String> = (samples.iter().zip(&commands))
@@ -124,8 +124,8 @@ fn the_supervisor_of_a_whole_rotor_is_the_native_one() {
     for version in ["3.0", "2.0"] {
         units(&path, folder.path(), version);
         let unit = folder.path().join("supervisor.fmu");
-        let said = checked(&python, CHECKS, &["ticks", text(&unit), text(&csv)]);
+        let report = checked(&python, CHECKS, &["ticks", text(&unit), text(&csv)]);
         let expected = format!("{} ticks of 2 planes the same", seen.len());
-        assert!(said.contains(&expected), "{said}");
+        assert!(report.contains(&expected), "{report}");
     }
 }

@@ -189,7 +189,7 @@ fn every_policy_survives_every_fault() {
     }
 }
 
-/// The supervisor is told that the spin is unknown, or told the wrong one.
+/// The spin is reported as unknown, or a wrong one is.
 #[test]
 fn the_spin_that_is_seen_matters() {
     let mut scene = scene("overload_then_release");

@@ -297,9 +297,9 @@ fn a_known_outage_is_told() {
     scene.planes[0].outages = vec![outage(Axis::X, true), outage(Axis::Y, true)];
     assert!(modes(&scene) == known, "one after the other");
     scene.planes[0].outages = vec![outage(Axis::X, true), outage(Axis::Y, false)];
-    let told = modes(&scene);
-    assert!(told.iter().all(|(_, force_n)| force_n.x == 0.0));
-    assert!(told.iter().any(|(_, force_n)| force_n.y != 0.0));
+    let seen = modes(&scene);
+    assert!(seen.iter().all(|(_, force_n)| force_n.x == 0.0));
+    assert!(seen.iter().any(|(_, force_n)| force_n.y != 0.0));
 }
 
 /// v̇ = −d/m·v, but for the delay; saturated it brakes with the cap.
@@ -356,19 +356,19 @@ fn outages_begin_at_any_time_under_a_slew_limit() {
 }
 
 /// Whether the force is measured, and what it is [N], tick by tick.
-type Told = Rc<RefCell<Vec<(bool, [f32; 2])>>>;
+type AppliedForces = Rc<RefCell<Vec<(bool, [f32; 2])>>>;
 
-/// Keeps what the supervisor behind it is told of the force.
+/// Keeps the forces that the supervisor behind it is given.
 #[derive(Debug)]
 struct Listening {
     supervisor: Supervisor,
-    told: Told,
+    seen: AppliedForces,
 }
 
 impl Supervise for Listening {
     fn tick(&mut self, sample: &Sample) -> Command {
         let valid = sample.status.contains(Status::APPLIED_VALID);
-        self.told.borrow_mut().push((valid, sample.applied_n));
+        self.seen.borrow_mut().push((valid, sample.applied_n));
         self.supervisor.tick(sample)
     }
 }
@@ -381,17 +381,17 @@ fn a_measured_force_is_told() {
         let mut scene = scene("shock_15_g_on_amb");
         scene.planes[0].amplifier.force_measured = measured;
         scene.planes[0].feed_forward_n = V2::new(0.0, 98.1);
-        let told = Told::default();
+        let seen = AppliedForces::default();
         let supervisor = Listening {
             supervisor: Supervisor::new(&scene.planes[0].supervisor.unwrap()).unwrap(),
-            told: Rc::clone(&told),
+            seen: Rc::clone(&seen),
         };
         let policy = supervised(&scene, Box::new(supervisor)).unwrap();
         let acting = (policy, "supervisor");
         let (_, trace) = run_policy(&scene, acting, Keep::Trace, &mut |_| {}).unwrap();
-        let told = told.borrow();
+        let seen = seen.borrow();
         let mut most = 0.0_f64;
-        for (row, (valid, applied_n)) in samples(&trace).iter().zip(told.iter()) {
+        for (row, (valid, applied_n)) in samples(&trace).iter().zip(seen.iter()) {
             let expected = row.plant.delivered_n - scene.planes[0].feed_forward_n;
             assert_eq!(*valid, measured);
             let expected = if measured { expected } else { V2::zeros() };

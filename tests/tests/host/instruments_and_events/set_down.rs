@@ -32,8 +32,8 @@ fn the_rotor_follows_its_reference() {
         assert!(off_m < 2e-6, "{until_s}: {end_m}");
     }
     assert!((scene.planes[0].reference_m(0.045) - 0.5 * away_m).norm() < 1e-12);
-    let told = [0.0, 0.02, 0.19, 0.3].map(|t_s| scene.planes[0].set_down_announced(t_s));
-    assert_eq!(told, [false, true, true, false]);
+    let announced = [0.0, 0.02, 0.19, 0.3].map(|t_s| scene.planes[0].set_down_announced(t_s));
+    assert_eq!(announced, [false, true, true, false]);
 }
 
 /// In clearances in a file; without a levitation controller of gains there is nothing to move.

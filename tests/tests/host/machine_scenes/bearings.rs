@@ -120,8 +120,8 @@ fn a_warm_bearing_is_told() {
         assert!(heat_j > 1.0);
         // 90 J/K, and next to nothing has leaked.
         assert!((rise_k * 90.0 / heat_j - 1.0).abs() < 0.01, "{rise_k}");
-        let said = 2e-4 + 2e-7 * rise_k;
-        assert!((number("clearance_m") / said - 1.0).abs() < 1e-9);
+        let want = 2e-4 + 2e-7 * rise_k;
+        assert!((number("clearance_m") / want - 1.0).abs() < 1e-9);
     }
     assert_eq!(json["policies"]["passive"].get("bearing"), None);
 }

@@ -3,7 +3,7 @@
 use super::{machine, planes};
 use crate::refusals::{all, parsed};
 use firmware_bench::record::file::RecordFile;
-use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
+use firmware_bench::run::closed_loop::{Accuracy, Recorders, record};
 use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -37,8 +37,8 @@ fn planes_in_turn_recover_and_replay() {
     let mut records = Vec::new();
     let mut traces = vec![Trace::default(); 2];
     let recorders = Recorders::of_planes(&mut traces);
-    let (kind, rigour) = (PolicyKind::Supervisor, Rigour::default());
-    for (_, read_out) in record(&scene, kind, recorders, rigour, &mut |_| {}).unwrap() {
+    let (kind, accuracy) = (PolicyKind::Supervisor, Accuracy::default());
+    for (_, read_out) in record(&scene, kind, recorders, accuracy, &mut |_| {}).unwrap() {
         let read_out = read_out.unwrap();
         assert!(read_out.report.landings > 0);
         assert_eq!(read_out.report.missed_ticks, 0);

@@ -109,11 +109,11 @@ fn a_seal_that_is_touched_is_judged() {
         );
         assert!(whole.outcome >= seal.outcome);
         assert!(whole.energy_residual < 1e-8);
-        let said =
+        let outcome =
             |(_, trace): &(Figures, Trace)| (trace.rows.iter()).any(|row| row.supervisor.is_some());
         let supervised = kind == PolicyKind::Supervisor;
         assert_eq!(
-            ended.iter().map(said).collect::<Vec<_>>(),
+            ended.iter().map(outcome).collect::<Vec<_>>(),
             [false, supervised, supervised]
         );
         let forces = ended[0].1.rows.iter().map(|row| row.commanded_n.norm());

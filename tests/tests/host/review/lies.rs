@@ -2,7 +2,7 @@
 
 use super::{damage::sections, review};
 use firmware_bench::record::file::{PlaneRecord, RecordFile};
-use firmware_bench::record::story::{Event, Told, Verdict};
+use firmware_bench::record::narrative::{Event, Narrative, Verdict};
 use firmware_bench::record::ticks::Ticks;
 use firmware_bench::record::unknown::{Reason, Unknown};
 use firmware_bench::run::closed_loop::{Keep, run};
@@ -200,7 +200,7 @@ impl<'a> Truth<'a> {
 /// What is reviewed of a record, with its ticks counted as the run's.
 struct Reviewed<'a> {
     record: &'a PlaneRecord,
-    told: Told,
+    narrative: Narrative,
     text: String,
     verdict: Verdict,
     unknown: Vec<Unknown>,
@@ -211,7 +211,7 @@ struct Reviewed<'a> {
 impl<'a> Reviewed<'a> {
     fn of(event: &Event<'a>) -> Option<Self> {
         let record = event.records[0];
-        let told = event.told()?;
+        let narrative = event.narrative()?;
         let zero = zero(record);
         let in_run = |stretch: &Unknown| Unknown {
             ticks: stretch.ticks.map(|tick| tick + zero),
@@ -224,9 +224,9 @@ impl<'a> Reviewed<'a> {
             .map_or(0, |e| i64::from(e.sequence));
         Some(Self {
             record,
-            text: told.paragraph(0.0),
-            verdict: told.verdict(0.0),
-            told,
+            text: narrative.paragraph(0.0),
+            verdict: narrative.verdict(0.0),
+            narrative,
             unknown: event.unknown[0].iter().map(in_run).collect(),
             span: [first, zero + record.tick_of(record.head.closed_at) + 1],
         })
@@ -269,7 +269,7 @@ const NOISE_M_S: f64 = 0.02;
 /// Nothing that is said contradicts what the plant did.
 fn holds(lied: &Lied, reviewed: &Reviewed<'_>, shown: &mut Shown) {
     let Reviewed {
-        told,
+        narrative,
         text,
         verdict,
         unknown,
@@ -310,17 +310,17 @@ fn holds(lied: &Lied, reviewed: &Reviewed<'_>, shown: &mut Shown) {
     if text.contains("unknown throughout") {
         shown.throughout += 1;
         let figures = [
-            told.contact_s,
-            told.hardest_impact_m_s,
-            told.max_whirl_hz,
-            told.whirl_share,
-            told.severity,
+            narrative.contact_s,
+            narrative.hardest_impact_m_s,
+            narrative.max_whirl_hz,
+            narrative.whirl_share,
+            narrative.severity,
         ];
         assert_eq!(figures, [None; 5], "{name}");
-        assert_eq!(told.whirled, None, "{name}");
+        assert_eq!(narrative.whirled, None, "{name}");
         // One before the engagement may have been seen.
         let before = Truth::between(&lied.trace, *from, unknown[0].ticks[0]);
-        assert!(told.touches.is_none() || before.touched(), "{name}");
+        assert!(narrative.touches.is_none() || before.touched(), "{name}");
     }
 
     // What was seen is what was there, as far as the sensor showed it.
@@ -339,9 +339,9 @@ fn holds(lied: &Lied, reviewed: &Reviewed<'_>, shown: &mut Shown) {
         .rows
         .iter()
         .all(|row| (row.measured_m - row.plant.position_m).norm() < 1e-5);
-    if honest && told.speeds_unknown.is_none() {
+    if honest && narrative.speeds_unknown.is_none() {
         shown.honest += 1;
-        if let (Some(touches), Some(contact_s)) = (told.touches, told.contact_s) {
+        if let (Some(touches), Some(contact_s)) = (narrative.touches, narrative.contact_s) {
             assert!(
                 touches as usize <= truth.touches(),
                 "{} {name}",
@@ -351,23 +351,23 @@ fn holds(lied: &Lied, reviewed: &Reviewed<'_>, shown: &mut Shown) {
             assert!(contact_s <= 1.1 * near_s + 3e-4, "{near_s} {name}");
         }
     }
-    shown.doubted += usize::from(told.speeds_unknown.is_some());
+    shown.doubted += usize::from(narrative.speeds_unknown.is_some());
 
     // A speed that is said is the plant's.
-    if let Some(speed) = told.hardest_impact_m_s {
+    if let Some(speed) = narrative.hardest_impact_m_s {
         let fastest = truth.fastest_outwards_m_s();
         assert!(
             speed <= (1.0 + SHARE) * fastest + NOISE_M_S,
             "{fastest} {name}"
         );
     }
-    if let Some(hz) = told.max_whirl_hz {
+    if let Some(hz) = narrative.max_whirl_hz {
         let fastest = truth.backward_hz();
         assert!(
             hz <= (1.0 + SHARE) * fastest + NOISE_HZ,
             "{hz} for {fastest} {name}"
         );
-        if told.whirled == Some(true) {
+        if narrative.whirled == Some(true) {
             assert!(
                 unknown.iter().any(|s| s.serious) || hz >= (1.0 - SHARE) * fastest,
                 "{hz} for {fastest} {name}"
@@ -380,8 +380,8 @@ fn holds(lied: &Lied, reviewed: &Reviewed<'_>, shown: &mut Shown) {
 /// Readings that the supervisor did not believe, tick by tick of the run.
 fn refused(lied: &Lied) -> Vec<i64> {
     let bad = |row: &&TraceRow| {
-        row.supervisor.is_some_and(|said| {
-            said.limits.contains(Limits::SAMPLE_REFUSED) || said.mode == Mode::SensorFault
+        row.supervisor.is_some_and(|trace| {
+            trace.limits.contains(Limits::SAMPLE_REFUSED) || trace.mode == Mode::SensorFault
         })
     };
     let rows = lied.trace.rows.iter().filter(|row| !row.mode_change);
@@ -438,14 +438,14 @@ fn no_sentence_contradicts_the_plant() {
         shown.whirls > 15 && shown.honest > 45 && shown.doubted > 60,
         "{shown:?}"
     );
-    let said = [
+    let cases = [
         ("\"nan\"", Reason::NotANumber),
         ("\"infinity\"", Reason::NotANumber),
         ("\"rail\"", Reason::OutOfRange),
         ("\"stuck\"", Reason::DidNotChange),
         ("\"dropout\"", Reason::NoNewSample),
     ];
-    for (kind, reason) in said {
+    for (kind, reason) in cases {
         let of: Vec<_> = reasons.iter().filter(|(k, _)| k.contains(kind)).collect();
         assert!(
             of.len() > 3 && of.iter().all(|(_, r)| *r == reason),
@@ -513,7 +513,7 @@ fn ticks(record: &PlaneRecord) -> Vec<i64> {
 #[test]
 fn damage_makes_nothing_known() {
     let kinds = [None, Some(FAULTS[0]), Some(FAULTS[5]), Some(FAULTS[13])];
-    let (mut files, mut unseen, mut told) = (0, 0, 0);
+    let (mut files, mut unseen, mut judged) = (0, 0, 0);
     for (event, kind) in [OVERLOAD, WHIRL]
         .iter()
         .flat_map(|event| kinds.map(|kind| (event, kind)))
@@ -555,17 +555,17 @@ fn damage_makes_nothing_known() {
             let Some(reviewed) = Reviewed::of(event) else {
                 continue;
             };
-            told += 1;
+            judged += 1;
             let all = record.entries.len() == entries.len()
                 && record.track.len() == whole.records[0].track.len();
             assert!(all || reviewed.verdict != Verdict::RunOn, "{name}");
             assert!(reviewed.record.summary.is_some() && reviewed.record.config.is_some());
         }
     }
-    println!("{files} {unseen} {told}");
+    println!("{files} {unseen} {judged}");
     assert!(
-        files > 80 && unseen > 5000 && told > 60,
-        "{files} {unseen} {told}"
+        files > 80 && unseen > 5000 && judged > 60,
+        "{files} {unseen} {judged}"
     );
 }
 

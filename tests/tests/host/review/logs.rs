@@ -21,8 +21,8 @@ fn review(log: &Path, scene: &Path, more: &[&str]) -> Output {
 
 fn json(log: &Path, scene: &Path, more: &[&str]) -> Value {
     let output = review(log, scene, &[&["--json"], more].concat());
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{}: {said}", log.display());
+    let shown = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{}: {shown}", log.display());
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
@@ -86,14 +86,14 @@ fn a_log_shows_the_event_that_the_record_has() {
     let record = json(&out.join("record_supervisor.bin"), &scene, &[]);
     assert!(record["log"].is_null());
     let own = json(&trace, &scene, &[]);
-    let (told, seen) = (&own["summary"], &record["summary"]);
+    let (watched, seen) = (&own["summary"], &record["summary"]);
     assert_eq!(
-        (&told["outcome"], &told["touches"]),
+        (&watched["outcome"], &watched["touches"]),
         (&seen["outcome"], &seen["touches"])
     );
     for figure in ["hardest_impact_m_s", "contact_s", "severity"] {
         let (a, b) = (
-            told[figure].as_f64().unwrap(),
+            watched[figure].as_f64().unwrap(),
             seen[figure].as_f64().unwrap(),
         );
         assert!((a / b - 1.0).abs() < 0.05, "{figure}: {a}, recorded {b}");
@@ -114,7 +114,7 @@ fn a_log_shows_the_event_that_the_record_has() {
     fs::write(&written, foreign(&csv, true)).unwrap();
     let columns = [&NAMES[..], &FORCES].concat();
     let other = json(&written, &scene, &columns);
-    assert_eq!(other["summary"]["touches"], told["touches"]);
+    assert_eq!(other["summary"]["touches"], watched["touches"]);
     assert!(other["log"]["has_spin"] == false && other["log"]["has_force"] == true);
     if let Some(python) = python() {
         let mat = out.join("foreign.mat");
@@ -127,30 +127,30 @@ fn a_log_shows_the_event_that_the_record_has() {
             let mut python = Command::new(&python);
             let done = python.arg("-c").arg(script).args([&written, &mat]).output();
             let done = done.unwrap();
-            let said = String::from_utf8_lossy(&done.stderr);
-            assert!(done.status.success(), "{said}");
+            let shown = String::from_utf8_lossy(&done.stderr);
+            assert!(done.status.success(), "{shown}");
         };
         convert("d[c].to_numpy()");
         assert_eq!(json(&mat, &scene, &columns)["summary"], other["summary"]);
         // Vectors of a file need not be of one log.
         convert("d[c].to_numpy()[3 * (c == 'fy'):]");
         let refused = review(&mat, &scene, &columns);
-        let said = String::from_utf8_lossy(&refused.stderr);
+        let shown = String::from_utf8_lossy(&refused.stderr);
         assert!(
-            refused.status.code() == Some(2) && said.contains("rows and t_s"),
-            "{said}"
+            refused.status.code() == Some(2) && shown.contains("rows and t_s"),
+            "{shown}"
         );
     }
 
     // Without forces, which is said; what is read as a touch stays one.
     fs::write(&written, foreign(&csv, false)).unwrap();
     let without = review(&written, &scene, &NAMES);
-    let said = String::from_utf8_lossy(&without.stdout);
+    let shown = String::from_utf8_lossy(&without.stdout);
     assert!(
-        said.contains("no force") && said.contains("touches"),
-        "{said}"
+        shown.contains("no force") && shown.contains("touches"),
+        "{shown}"
     );
-    assert!(!said.contains("Replayed"), "{said}");
+    assert!(!shown.contains("Replayed"), "{shown}");
 }
 
 #[test]
@@ -193,10 +193,10 @@ fn gaps_of_a_log_are_positions_that_are_unknown() {
     let cut: Vec<&str> = text.lines().take(600).collect();
     fs::write(&log, cut.join("\n") + "\n").unwrap();
     let output = review(&log, &scene, &columns);
-    let said = String::from_utf8_lossy(&output.stdout);
-    assert!(said.contains("where it is not over"), "{said}");
-    assert!(said.contains("the log ends before it was over"), "{said}");
-    assert!(!said.contains("Nothing speaks against"), "{said}");
+    let shown = String::from_utf8_lossy(&output.stdout);
+    assert!(shown.contains("where it is not over"), "{shown}");
+    assert!(shown.contains("the log ends before it was over"), "{shown}");
+    assert!(!shown.contains("Nothing speaks against"), "{shown}");
 
     // Before the event there is none.
     let quiet: Vec<&str> = text.lines().take(300).collect();
@@ -264,16 +264,16 @@ fn what_a_log_lacks_is_named() {
     fs::write(&log, "t_s,x\n0,0\n5e-5,0\n1e-4,0\n").unwrap();
     let scene = scene_path("overload_then_release");
     let output = host().arg("review").arg(&log).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let shown = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(
-        output.status.code() == Some(2) && said.contains("--scene"),
-        "{said}"
+        output.status.code() == Some(2) && shown.contains("--scene"),
+        "{shown}"
     );
     let output = review(&log, &scene, &[]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let shown = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2));
     for part in ["measured_x_m", "log.csv", "t_s, x", "--column"] {
-        assert!(said.contains(part), "{part}: {said}");
+        assert!(shown.contains(part), "{part}: {shown}");
     }
     // In milliseconds and micrometres that nobody turned.
     let rows: Vec<String> = (0..200)
@@ -285,16 +285,16 @@ fn what_a_log_lacks_is_named() {
     )
     .unwrap();
     let output = review(&log, &scene, &[]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let shown = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(
-        output.status.code() == Some(2) && said.contains("t_s*1e-3"),
-        "{said}"
+        output.status.code() == Some(2) && shown.contains("t_s*1e-3"),
+        "{shown}"
     );
     let output = review(&log, &scene, &["--column", "t_s=t_s*1e-3"]);
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let shown = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(
-        output.status.success() && said.contains("No rotor goes so far"),
-        "{said}"
+        output.status.success() && shown.contains("No rotor goes so far"),
+        "{shown}"
     );
 }
 
@@ -311,33 +311,33 @@ fn what_is_no_number_of_a_machine_is_said() {
         let head = "t_s,measured_x_m,measured_y_m,spin_rad_s\n";
         fs::write(&log, format!("{head}{rows}")).unwrap();
         let output = review(&log, &scene, more);
-        let said = [&output.stdout[..], &output.stderr].concat();
-        let said = String::from_utf8(said).unwrap();
-        let words: Vec<&str> = said.split_whitespace().collect();
+        let shown = [&output.stdout[..], &output.stderr].concat();
+        let shown = String::from_utf8(shown).unwrap();
+        let words: Vec<&str> = shown.split_whitespace().collect();
         (output.status.code(), words.join(" "))
     };
     let far = |i| if i == 7 { "1e300" } else { "1e-5" };
-    let (code, said) = of(&far, &[]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, shown) = of(&far, &[]);
+    assert_eq!(code, Some(0), "{shown}");
     for part in [
         "count as unknown: 2.",
         "0.0",
         "spin_rad_s has no number",
         "the scene's is taken",
     ] {
-        assert!(said.contains(part), "{part}: {said}");
+        assert!(shown.contains(part), "{part}: {shown}");
     }
-    assert!(!said.contains("00000000"), "{said}");
-    let (code, said) = of(&|_| "nan", &[]);
+    assert!(!shown.contains("00000000"), "{shown}");
+    let (code, shown) = of(&|_| "nan", &[]);
     assert!(
-        code == Some(0) && said.contains("no position is a number"),
-        "{said}"
+        code == Some(0) && shown.contains("no position is a number"),
+        "{shown}"
     );
     for mapping in ["foo=t_s", "stimulus_x_n=t_s", "t_s=nope"] {
-        let (code, said) = of(&|_| "0", &["--column", mapping]);
+        let (code, shown) = of(&|_| "0", &["--column", mapping]);
         assert!(
-            code == Some(2) && said.contains("--column"),
-            "{mapping}: {said}"
+            code == Some(2) && shown.contains("--column"),
+            "{mapping}: {shown}"
         );
     }
 }

@@ -25,9 +25,9 @@ fn slips_are_warned_of() {
             _ => key.replace("[0]", "[]"),
         };
         assert!(listed.contains(&format!("`{in_page}`")), "{key}");
-        let said = ran(text);
-        let warning = said.lines().find(|l| l.starts_with("warning: "));
-        let warning = warning.unwrap_or_else(|| panic!("{row:?}: {said}"));
+        let shown = ran(text);
+        let warning = shown.lines().find(|l| l.starts_with("warning: "));
+        let warning = warning.unwrap_or_else(|| panic!("{row:?}: {shown}"));
         assert!(warning.contains("short.toml:"), "{warning}");
         warning.to_owned()
     };
@@ -38,10 +38,10 @@ fn slips_are_warned_of() {
     let rest = short().replacen("duration_s = 0.03", "duration_s = 0.030_02", 1);
     all("runs/slip_of_a_sample", 1, &rest, warning);
     // Refused at another key: the slip is told beside it.
-    let said = ran(&short().replacen("clearance_m = 2e-4", "clearance_m = 0.2", 1));
+    let shown = ran(&short().replacen("clearance_m = 2e-4", "clearance_m = 0.2", 1));
     assert!(
-        said.contains("look here first") && said.contains("contact.clearance_m: is larger"),
-        "{said}"
+        shown.contains("look here first") && shown.contains("contact.clearance_m: is larger"),
+        "{shown}"
     );
     // A supervisor would refuse such a sensor. The folder keeps what was said on the screen.
     let scene = short_scene(folder.path(), |t| {
@@ -50,15 +50,15 @@ fn slips_are_warned_of() {
             .replace("quantum_m = 1e-7", "quantum_m = 2.1e-4")
     });
     let out = folder.path().join("blind");
-    let said = String::from_utf8(run_scene(&scene, &out, &[]).stderr).unwrap();
+    let shown = String::from_utf8(run_scene(&scene, &out, &[]).stderr).unwrap();
     let verdict = fs::read_to_string(out.join("verdict.json")).unwrap();
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     for key in [
         "sensor.noise_rms_m: is larger",
         "sensor.quantum_m: is larger",
     ] {
-        for text in [&said, &verdict, &report] {
-            assert!(text.contains(key), "{key}: {said}");
+        for text in [&shown, &verdict, &report] {
+            assert!(text.contains(key), "{key}: {shown}");
         }
     }
     for row in rows("runs/no_slips", 12) {
@@ -68,7 +68,7 @@ fn slips_are_warned_of() {
     }
 }
 
-/// A sweep is no scene and a scene no sweep; magnets that are told by currents, and an inertia that is too small, get numbers.
+/// A sweep is no scene and a scene no sweep; magnets that are given by currents, and an inertia that is too small, get numbers.
 #[test]
 fn what_was_meant_is_said() {
     let folder = TempDir::new().unwrap();

@@ -236,10 +236,10 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
     assert_eq!(supervision["first_engaged_s"], times[first]);
     let severities = column(&rows, "supervisor_severity", number);
     let highest = severities.iter().copied().fold(0.0, f64::max);
-    let told = supervision["expected_severity_max"].as_f64().unwrap();
+    let peak = supervision["expected_severity_max"].as_f64().unwrap();
     assert!(
-        highest > 1.0 && (told / highest - 1.0).abs() < 1e-6,
-        "{told}, {highest}"
+        highest > 1.0 && (peak / highest - 1.0).abs() < 1e-6,
+        "{peak}, {highest}"
     );
     assert_eq!(supervision["sensor_faults"], 0);
     assert_eq!(supervision["landings"], 1);
@@ -255,8 +255,8 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
     let (drawn, data) = report.split_once("<script").unwrap();
     for event in ["ENGAGED", "HANDOVER", "LEVITATED", "RECORD_FROZEN"] {
         assert!(data.contains(event), "{event}");
-        let (told, said) = (drawn.matches(event).count(), with(event));
-        assert!(said > 0 && told == said, "{event}: {told} of {said}");
+        let (shown, all) = (drawn.matches(event).count(), with(event));
+        assert!(all > 0 && shown == all, "{event}: {shown} of {all}");
     }
 }
 
@@ -308,7 +308,7 @@ fn levitation_is_in_the_trace() {
 
     // Numbers say what the words say, as the documentation has them; bits are there where names are.
     let text = fs::read_to_string(root().join("docs/src/host/results.md")).unwrap();
-    let told = |column: &str| {
+    let docs = |column: &str| {
         let line = text
             .lines()
             .find(|l| l.starts_with(&format!("| `{column}_code`")));
@@ -329,10 +329,10 @@ fn levitation_is_in_the_trace() {
         .iter()
         .map(|mode| format!("{} `{}`", *mode as u8, mode.name()))
         .collect();
-    assert!(told("supervisor_mode").contains(&all.join(", ")), "{all:?}");
+    assert!(docs("supervisor_mode").contains(&all.join(", ")), "{all:?}");
     for name in ["mode", "supervisor_mode"] {
         let (line, numbers) = (
-            told(name),
+            docs(name),
             column(&supervised, &format!("{name}_code"), number),
         );
         let words = column(&supervised, name, word);

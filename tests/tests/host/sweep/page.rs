@@ -79,8 +79,8 @@ fn maps_are_of_the_keys_that_are_asked_for() {
     let before = contents(&out);
     let maps = "maps = [[\"contact.stiffness_n_m\", \"friction.coefficient\"], [\"friction.coefficient\", \"run.method\"]]\n";
     sweep_file(folder.path(), &with(maps));
-    let said = succeeds(&sweep(&file, &out, &[]));
-    assert!(said.contains("nothing was left to run"), "{said}");
+    let text = succeeds(&sweep(&file, &out, &[]));
+    assert!(text.contains("nothing was left to run"), "{text}");
     let page = page(&out);
     for policy in ["levitation", "supervisor"] {
         for keys in [
@@ -110,7 +110,7 @@ fn maps_are_of_the_keys_that_are_asked_for() {
 fn few_runs_have_a_page() {
     let folder = TempDir::new().unwrap();
     let key = "[[vary]]\nkey = \"contact.restitution\"\nuniform = [0.5, 0.9]\n";
-    for (lines, code, said) in [
+    for (lines, code, text) in [
         (key.to_owned(), 0, "Nothing can be said about loss"),
         (
             key.replace("0.5, 0.9", "1.5, 1.9"),
@@ -123,7 +123,7 @@ fn few_runs_have_a_page() {
         let out = folder.path().join(code.to_string());
         assert_eq!(sweep(&file, &out, &[]).status.code(), Some(code));
         let page = page(&out);
-        assert!(page.contains(said) && page.ends_with("</html>\n"), "{page}");
+        assert!(page.contains(text) && page.ends_with("</html>\n"), "{page}");
         assert!(!page.contains("NaN"), "{page}");
     }
 }

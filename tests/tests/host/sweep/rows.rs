@@ -172,7 +172,7 @@ fn the_examples_of_the_page_are_sweeps() {
         .collect();
     assert_eq!(sizes, [(1000, 2)]);
     let forces: std::collections::BTreeSet<Option<i64>> = (0..1000)
-        .map(|run| plans[0].drawn(run).values[1].as_integer())
+        .map(|run| plans[0].point(run).values[1].as_integer())
         .collect();
     assert!(forces.into_iter().eq([900, 1300, 1700].map(Some)));
 }

@@ -113,7 +113,7 @@ impl Process {
                 }
                 ErrorKind::UnexpectedEof | ErrorKind::BrokenPipe | ErrorKind::ConnectionReset => {
                     match self.ended() {
-                        Some(status) => said(status),
+                        Some(status) => described(status),
                         None => "has closed its standard input".to_owned(),
                     }
                 }
@@ -127,7 +127,7 @@ impl Process {
         drop(self.socket.take());
         match self.ended() {
             Some(status) if status.success() => Ok(()),
-            Some(status) => Err(said(status)),
+            Some(status) => Err(described(status)),
             None => Err(format!(
                 "has not ended within {} s and was stopped",
                 self.timeout.as_secs_f64()
@@ -159,7 +159,7 @@ impl Drop for Process {
     }
 }
 
-fn said(status: ExitStatus) -> String {
+fn described(status: ExitStatus) -> String {
     match status.code() {
         Some(code) => format!("ended with exit code {code}"),
         None => format!("crashed: {status}"),

@@ -105,7 +105,7 @@ pub(crate) fn thinned(
     for point in points.filter(|p| window.contains(p.0) && drawable(p.1)) {
         let column = column(point.0, window, columns);
         match all.last_mut().filter(|last| last.column == column) {
-            Some(last) => last.take(point),
+            Some(last) => last.extend_to(point),
             None => all.push(Extremes {
                 column,
                 low: point,
@@ -117,7 +117,7 @@ pub(crate) fn thinned(
 }
 
 impl Extremes {
-    fn take(&mut self, point: (f64, f64)) {
+    fn extend_to(&mut self, point: (f64, f64)) {
         if point.1 < self.low.1 {
             self.low = point;
         }

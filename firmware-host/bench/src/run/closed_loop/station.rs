@@ -6,7 +6,7 @@ use crate::device::sensor::{Sensor, SensorParams};
 use crate::device::sensor_fault::seen_until_s;
 use crate::run::controller::{Controller, Force, Seen};
 use crate::run::judge::Judge;
-use crate::run::trace::{Recorder, Said, TraceRow};
+use crate::run::trace::{Recorder, SupervisorTrace, TraceRow};
 use crate::scene::{PlaneScene, Scene};
 use plant_model::machine::params::MachinePlane;
 use plant_model::{Snapshot, V2};
@@ -26,8 +26,8 @@ pub(super) struct Station<'a> {
     pub(super) recorder: Option<&'a mut dyn Recorder>,
     /// The last reading of the position \[m\].
     pub(super) measured_m: V2,
-    /// What the supervisor said to the last sample.
-    said: Option<Said>,
+    /// The supervisor's answer to the last sample.
+    supervisor: Option<SupervisorTrace>,
     /// What happened at it.
     events: Events,
 }
@@ -57,13 +57,13 @@ impl<'a> Station<'a> {
             judge: Judge::new(scene, plane),
             recorder,
             measured_m: V2::zeros(),
-            said: None,
+            supervisor: None,
             events: Events::empty(),
         }
     }
 
     /// What firmware knows at a tick.
-    pub(super) fn see(&mut self, t_s: f64, sensed_m: V2, now: &Snapshot) -> Seen {
+    pub(super) fn read_sensor(&mut self, t_s: f64, sensed_m: V2, now: &Snapshot) -> Seen {
         let [of_sensor, of_magnet] = self.axes;
         let sensed_m = of_sensor.seen(sensed_m);
         let reading = (self.sensor).read(t_s, sensed_m, now.spin_rad_s);
@@ -101,11 +101,11 @@ impl<'a> Station<'a> {
             }
         }
         self.judge.sample(now);
-        self.said = self.controller.said();
+        self.supervisor = self.controller.supervisor_trace();
         self.record(now, false);
         // What happened at this sample is not to be read a second time.
-        if let Some(said) = &mut self.said {
-            self.events = std::mem::take(&mut said.events);
+        if let Some(trace) = &mut self.supervisor {
+            self.events = std::mem::take(&mut trace.events);
         }
     }
 
@@ -144,7 +144,7 @@ impl<'a> Station<'a> {
     pub(super) fn sampled(&self, plant: &Snapshot) -> TraceRow {
         let (events, row) = (self.events, self.row(plant, false));
         TraceRow {
-            supervisor: row.supervisor.map(|said| Said { events, ..said }),
+            supervisor: row.supervisor.map(|t| SupervisorTrace { events, ..t }),
             ..row
         }
     }
@@ -155,10 +155,10 @@ impl<'a> Station<'a> {
             plant: *plant,
             measured_m: self.measured_m,
             commanded_n: self.axes[1].meant(self.amplifier.in_effect_n()),
-            supervisor: self.said.map(|said| Said {
-                levitation_n: self.axes[1].meant_f32(said.levitation_n),
-                stimulus_n: self.axes[1].meant_f32(said.stimulus_n),
-                ..said
+            supervisor: self.supervisor.map(|trace| SupervisorTrace {
+                levitation_n: self.axes[1].meant_f32(trace.levitation_n),
+                stimulus_n: self.axes[1].meant_f32(trace.stimulus_n),
+                ..trace
             }),
             mode_change,
         }

@@ -1,7 +1,7 @@
 //! A scene's loop sample by sample, for a program that has a clock of its own.
 
-use super::bench::Bench;
-use super::{Keep, Recorders, RunError, Task, bench_of_policy};
+use super::sample_hold::ClosedLoop;
+use super::{Keep, Recorders, RunError, Task, loop_of_policy};
 use crate::run::controller::{Force, Seen};
 use crate::run::trace::TraceRow;
 use crate::scene::Scene;
@@ -19,17 +19,17 @@ pub enum Driver {
 }
 
 self_cell!(
-    struct Ride {
+    struct OwnedLoop {
         owner: Scene,
         #[not_covariant]
-        dependent: Bench,
+        dependent: ClosedLoop,
     }
 );
 
 /// A scene at a control sample. Under a policy a whole run of it has the same rows, bit for bit, as the same scene has in
 /// [`record`](super::record).
 pub struct Stepwise {
-    ride: Ride,
+    owned: OwnedLoop,
     driver: Driver,
     task: Task,
     /// The sample that it stands at.
@@ -52,11 +52,11 @@ impl Stepwise {
         };
         let task = Task::keeping(Keep::Verdict, name);
         let planes = scene.planes.len();
-        let ride = Ride::try_new(scene, |scene| {
-            bench_of_policy(scene, kind, Recorders::default(), task)
+        let owned = OwnedLoop::try_new(scene, |scene| {
+            loop_of_policy(scene, kind, Recorders::default(), task)
         })?;
         let mut stepwise = Self {
-            ride,
+            owned,
             driver,
             task,
             tick: 0,
@@ -69,7 +69,7 @@ impl Stepwise {
     }
 
     pub fn scene(&self) -> &Scene {
-        self.ride.borrow_owner()
+        self.owned.borrow_owner()
     }
 
     /// How many planes it has.
@@ -79,21 +79,21 @@ impl Stepwise {
 
     /// Time of the sample that it stands at \[s\].
     pub fn t_s(&self) -> f64 {
-        self.ride.with_dependent(|_, bench| bench.at_s(self.tick))
+        self.owned.with_dependent(|_, sim| sim.at_s(self.tick))
     }
 
     /// The row of a plane at this sample, and what firmware sees there; `None` of a plane that there is not.
     pub fn at(&self, plane: usize) -> Option<(TraceRow, Seen)> {
-        self.ride.with_dependent(|_, bench| {
-            let station = bench.stations.get(plane)?;
-            let (now, seen) = (bench.now.get(plane)?, bench.seen.get(plane)?);
+        self.owned.with_dependent(|_, sim| {
+            let station = sim.stations.get(plane)?;
+            let (now, seen) = (sim.now.get(plane)?, sim.seen.get(plane)?);
             Some((station.sampled(now), *seen))
         })
     }
 
     /// Energy from nowhere over energy turned over, so far.
     pub fn energy_residual(&self) -> f64 {
-        (self.ride).with_dependent(|_, bench| bench.rig.audit().residual())
+        (self.owned).with_dependent(|_, sim| sim.rig.audit().residual())
     }
 
     /// The force that answers this sample \[N\], of a plane; what is fed forward comes on top. Without a policy.
@@ -105,7 +105,7 @@ impl Stepwise {
 
     /// A force on the centre of mass beside the scene's loads, from now on \[N\]; where it [takes](Scene::takes_push) one.
     pub fn push(&mut self, force_n: V2) {
-        (self.ride).with_dependent_mut(|_, bench| bench.rig.push(force_n));
+        (self.owned).with_dependent_mut(|_, sim| sim.rig.push(force_n));
     }
 
     /// Changes parameters of the plant from now on.
@@ -113,7 +113,7 @@ impl Stepwise {
     /// # Errors
     /// [`RunError`] for values out of range, and for a change that the plant is not built for.
     pub fn change(&mut self, change: &Change) -> Result<(), RunError> {
-        Ok((self.ride).with_dependent_mut(|_, bench| bench.rig.change(change))?)
+        Ok((self.owned).with_dependent_mut(|_, sim| sim.rig.change(change))?)
     }
 
     /// To the next control sample. Returns whether something began on the way: a touch, another mode of a supervisor.
@@ -123,14 +123,14 @@ impl Stepwise {
     pub fn advance(&mut self) -> Result<bool, RunError> {
         let (tick, task) = (self.tick, self.task);
         let (driver, commands_n) = (self.driver, &self.commands_n);
-        self.ride.with_dependent_mut(|_, bench| {
+        self.owned.with_dependent_mut(|_, sim| {
             if driver == Driver::Caller {
-                let stations = bench.stations.iter_mut().zip(&bench.now);
+                let stations = sim.stations.iter_mut().zip(&sim.now);
                 for ((station, now), force_n) in stations.zip(commands_n) {
                     station.command(tick, Force::Computed(*force_n), now);
                 }
             }
-            bench.carry_on(tick, task)
+            sim.advance_plant(tick, task)
         })?;
         self.tick += 1;
         self.sample()?;
@@ -146,15 +146,15 @@ impl Stepwise {
     /// [`RunError::Energy`].
     pub fn trusted(&self) -> Result<(), RunError> {
         let task = self.task;
-        (self.ride).with_dependent(|_, bench| bench.trusted(task))
+        (self.owned).with_dependent(|_, sim| sim.trusted(task))
     }
 
     fn sample(&mut self) -> Result<(), RunError> {
         let (tick, task, driver) = (self.tick, self.task, self.driver);
-        self.ride.with_dependent_mut(|_, bench| match driver {
-            Driver::Policy(_) => bench.sample(tick, task),
+        self.owned.with_dependent_mut(|_, sim| match driver {
+            Driver::Policy(_) => sim.sample(tick, task),
             Driver::Caller => {
-                bench.see(tick);
+                sim.read_sensors(tick);
                 Ok(())
             }
         })
@@ -163,8 +163,8 @@ impl Stepwise {
     fn state_now(&self) -> (u64, Vec<Option<Mode>>) {
         let planes = 0..self.planes();
         let touches = |plane| {
-            let meters = |bench: &Bench<'_>| bench.rig.meters(plane).impacts;
-            self.ride.with_dependent(|_, bench| meters(bench))
+            let meters = |sim: &ClosedLoop<'_>| sim.rig.meters(plane).impacts;
+            self.owned.with_dependent(|_, sim| meters(sim))
         };
         let mode = |plane| self.at(plane)?.0.supervisor_mode();
         (

@@ -1,11 +1,11 @@
 //! What decides: bars of influence, and their tables.
 
-use crate::report::drawn::Drawn;
 use crate::report::html_page::HtmlPage;
 use crate::report::listing::Listing;
 use crate::report::markup::Markup;
 use crate::report::plot::bars::{Bar, bars};
 use crate::report::plot::text::figures;
+use crate::report::rendered::Rendered;
 use crate::sweep::influence::Influence;
 use crate::sweep::summary::{KeyInfluence, Summary};
 
@@ -45,7 +45,7 @@ pub(super) fn decided(page: &mut HtmlPage, summary: &Summary) {
         };
         let headings = ["key", "share of the variance", "Spearman's correlation"];
         let listing = Listing::of_texts(&label, headings, keys.into_iter().map(row));
-        drawn.push(Drawn::new(&label, bars(&label, &shares), listing));
+        drawn.push(Rendered::new(&label, bars(&label, &shares), listing));
     }
     page.figures(&drawn);
 }

@@ -1,18 +1,18 @@
 //! Maps of outcomes over two keys.
 
-use crate::report::drawn::Drawn;
 use crate::report::listing::Listing;
 use crate::report::markup::Markup;
 use crate::report::plot::PlotError;
 use crate::report::plot::chart::{Axis, Chart, Curve, HeatMap, Mark, chart, heat_map};
 use crate::report::plot::text::figures;
+use crate::report::rendered::Rendered;
 use crate::run::outcome::Outcome;
 use crate::sweep::map::{MapAxis, OutcomeMap, Places};
 
 /// Room around runs that are shown one by one, as a share of an axis.
 const ROOM: f64 = 0.02;
 
-pub(super) fn map(map: &OutcomeMap) -> Result<Drawn, PlotError> {
+pub(super) fn map(map: &OutcomeMap) -> Result<Rendered, PlotError> {
     let OutcomeMap {
         policy, x, y, dots, ..
     } = map;
@@ -42,7 +42,7 @@ pub(super) fn map(map: &OutcomeMap) -> Result<Drawn, PlotError> {
             scale: (0.0, 1.0, "share lost".to_owned()),
         })?,
     };
-    Ok(Drawn::new(&name, drawing, counted(map)))
+    Ok(Rendered::new(&name, drawing, counted(map)))
 }
 
 /// Those that are lost as crosses, on top.

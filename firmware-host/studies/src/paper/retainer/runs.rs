@@ -3,7 +3,7 @@
 use super::{IMPACT_M_S, SPIN_HZ};
 use crate::paper::data::*;
 use crate::paper::runs::{Run, at_the_wall, watch};
-use plant_model::Mode;
+use plant_model::ContactMode;
 use plant_model::analysis::course::Course;
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 use plant_model::params::{RaceParams, SpinParams};
@@ -57,7 +57,7 @@ impl Tried {
         let from_s = course.whirl.first().map_or(f64::INFINITY, |r| r.t_s);
         let in_whirl = course.samples.iter().filter(|s| s.t_s >= from_s);
         let force_n = in_whirl.map(|s| s.normal_force_n).fold(0.0, f64::max);
-        let rolls = (course.samples.iter()).find(|s| s.mode == Mode::Roll && inside(s.t_s));
+        let rolls = (course.samples.iter()).find(|s| s.mode == ContactMode::Roll && inside(s.t_s));
         let dies_s = whirl.filter(|_| !lasts).map(|c| c.to_s);
         let last = course.at(dies_s.unwrap_or(f64::INFINITY));
         Ok(Self {

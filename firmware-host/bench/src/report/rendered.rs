@@ -13,7 +13,7 @@ const COLUMNS: usize = 12;
 
 /// A drawing with its name, and what it shows as a table for those who cannot see it or want its numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Drawn {
+pub struct Rendered {
     /// By which the page links to it; no two are alike.
     pub id: Option<String>,
     /// What is to be seen.
@@ -23,7 +23,7 @@ pub struct Drawn {
     pub data: Listing,
 }
 
-impl Drawn {
+impl Rendered {
     /// A drawing under a name.
     pub fn new(name: &str, drawing: String, data: Listing) -> Self {
         Self {

@@ -1,30 +1,30 @@
-//! What a supervisor says to a sample beside numbers, as outputs of a plane: of the supervisor's unit and of the closed loop's.
+//! What a supervisor answers to a sample beside numbers, as outputs of a plane: of the supervisor's unit and of the closed loop's.
 
 use crate::quantities::SUPERVISION;
 use crate::variable::{Kind, Output, Value};
-use firmware_bench::run::trace::Said;
+use firmware_bench::run::trace::SupervisorTrace;
 
 /// The outputs.
-pub(crate) const SAID: &[Output<Said>] = &[
+pub(crate) const TRACE: &[Output<SupervisorTrace>] = &[
     (
         "supervisor_mode",
         "",
         "what the supervisor is doing",
         Kind::Enumeration(&SUPERVISION),
-        |said| Value::Int64(said.mode as i64),
+        |trace| Value::Int64(trace.mode as i64),
     ),
     (
         "supervisor_limits",
         "",
         "bits of what binds its command",
         Kind::UInt32,
-        |said| Value::UInt32(said.limits.bits()),
+        |trace| Value::UInt32(trace.limits.bits()),
     ),
     (
         "supervisor_events",
         "",
         "bits of what happened at this sample",
         Kind::UInt32,
-        |said| Value::UInt32(said.events.bits()),
+        |trace| Value::UInt32(trace.events.bits()),
     ),
 ];

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 /// A machine.
 #[derive(Debug, Clone)]
-pub struct Machine {
+pub struct RandomMachine {
     /// Its number in the draw.
     pub number: u64,
     pub scene: Scene,
@@ -21,7 +21,7 @@ pub struct Machine {
 }
 
 /// What is drawn of a machine.
-struct Drawn {
+struct Sampled {
     mass_kg: f64,
     clearance_m: f64,
     force_n: f64,
@@ -44,8 +44,8 @@ struct Drawn {
     levitation: LevitationParams,
 }
 
-impl Drawn {
-    fn machine(&self, number: u64, name: &str) -> Result<Machine, SceneError> {
+impl Sampled {
+    fn machine(&self, number: u64, name: &str) -> Result<RandomMachine, SceneError> {
         let Self {
             mass_kg,
             clearance_m,
@@ -116,7 +116,7 @@ feed_forward_weight = true
             1e-3 * rate_hz,
             100.0 * noise_m / clearance_m,
         );
-        Ok(Machine {
+        Ok(RandomMachine {
             number,
             scene,
             toml,
@@ -125,7 +125,7 @@ feed_forward_weight = true
     }
 }
 
-impl Machine {
+impl RandomMachine {
     /// Machine of a number. Masses of 0.5 to 300 kg, clearances of 0.1 to 0.4 mm, forces of 2 to 50 times the weight,
     /// magnets that pull at the wall with up to 40 % of them, friction of 0.1 to 0.35, restitution of 0.4 to 0.9, amplifiers
     /// with 50 to 400 µs of lag, loops of 10 to 50 kHz, spins of 40 to 800 Hz either way, noise of 0.2 to 1.4 % of the
@@ -133,14 +133,14 @@ impl Machine {
     ///
     /// # Errors
     /// A machine that is no valid scene: a mistake of this draw.
-    pub fn drawn(seed: u64, number: u64) -> Result<Self, SceneError> {
+    pub fn sampled(seed: u64, number: u64) -> Result<Self, SceneError> {
         Self::mounted(seed, number, None)
     }
 
     /// The same on a mount that gives way: contact stiffness of 5 to 30 caps over the clearance.
     ///
     /// # Errors
-    /// As [`Self::drawn`].
+    /// As [`Self::sampled`].
     pub(crate) fn resilient(seed: u64, number: u64) -> Result<Self, SceneError> {
         let caps = Draw::new(!seed, number).decades(5.0, 30.0);
         Self::mounted(seed, number, Some(caps))
@@ -179,7 +179,7 @@ impl Machine {
         };
         let vertical = draw.share() < 0.4;
         let gravity = if vertical { 0.0 } else { -9.81 };
-        Drawn {
+        Sampled {
             mass_kg,
             clearance_m,
             force_n,
@@ -228,7 +228,7 @@ impl Machine {
         let spin_hz = sense * draw.decades(20.0, 1000.0);
         let noise_m = draw.decades(2e-7, 2e-6);
         let radius_m = draw.decades(0.02, 0.1);
-        Drawn {
+        Sampled {
             mass_kg,
             clearance_m,
             force_n,

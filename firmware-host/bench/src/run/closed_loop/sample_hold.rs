@@ -14,7 +14,7 @@ use plant_model::{PlantError, Snapshot, V2};
 use supervisor::{HalfTick, IntegratorHint, RotorSupervisor, Sample, Stamp};
 
 /// A rig with its stations, sample by sample.
-pub(super) struct Bench<'a> {
+pub(super) struct ClosedLoop<'a> {
     scene: &'a Scene,
     pub(super) rig: Rig<'a>,
     pub(super) stations: Vec<Station<'a>>,
@@ -46,7 +46,7 @@ pub(super) struct Bench<'a> {
     axis_row: AxisRow,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> ClosedLoop<'a> {
     pub(super) fn new(scene: &'a Scene, rig: Rig<'a>, stations: Vec<Station<'a>>) -> Self {
         let loads: Vec<Disturbance> = scene.loads().collect();
         let (planes, places) = (stations.len(), loads.len());
@@ -89,7 +89,7 @@ impl<'a> Bench<'a> {
     }
 
     /// To the end of the scene.
-    pub(super) fn ride(
+    pub(super) fn run_to_end(
         mut self,
         task: Task,
         on_tick: &mut dyn FnMut(u64),
@@ -158,7 +158,7 @@ impl<'a> Bench<'a> {
 
     fn tick(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
         self.sample(tick, task)?;
-        self.carry_on(tick, task)
+        self.advance_plant(tick, task)
     }
 
     /// Time of a control sample \[s\].
@@ -167,22 +167,22 @@ impl<'a> Bench<'a> {
     }
 
     /// What there is and what firmware sees of it.
-    pub(super) fn see(&mut self, tick: u64) {
+    pub(super) fn read_sensors(&mut self, tick: u64) {
         let t = self.at_s(tick);
         self.rig.read(&mut self.now);
         self.seen.clear();
         for (plane, (station, now)) in self.stations.iter_mut().zip(&self.now).enumerate() {
             station.amplifier.begin(tick);
             let sensed_m = self.rig.sensed_m(plane);
-            self.seen.push(station.see(t, sensed_m, now));
+            self.seen.push(station.read_sensor(t, sensed_m, now));
         }
     }
 
     /// A control sample: what firmware sees, and what it answers.
     pub(super) fn sample(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
-        self.see(tick);
+        self.read_sensors(tick);
         self.levitate(self.at_s(tick), task)?;
-        self.refer();
+        self.apply_reference();
         self.supervise();
         for (i, station) in self.stations.iter_mut().enumerate() {
             station.answer(tick, &self.seen[i], &self.now[i]);
@@ -192,7 +192,7 @@ impl<'a> Bench<'a> {
     }
 
     /// From a control sample to the next.
-    pub(super) fn carry_on(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
+    pub(super) fn advance_plant(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
         let (t, t_next) = (self.at_s(tick), self.at_s(tick + 1));
         let mut from = t;
         while from < t_next {
@@ -203,7 +203,7 @@ impl<'a> Bench<'a> {
             let parts = self.parts(from, to);
             let advanced = match parts {
                 None => self.advance_steadily(from, to),
-                Some(parts) => self.advance_by_parts((from, to), parts * task.rigour.parts),
+                Some(parts) => self.advance_by_parts((from, to), parts * task.accuracy.parts),
             };
             advanced.map_err(|reason| RunError::Plant {
                 policy: task.policy,
@@ -215,7 +215,7 @@ impl<'a> Bench<'a> {
     }
 
     /// The reference of the whole rotor, where there is one.
-    fn refer(&mut self) {
+    fn apply_reference(&mut self) {
         let Some(reference) = self.reference else {
             return;
         };

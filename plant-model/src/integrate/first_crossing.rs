@@ -4,7 +4,7 @@ use crate::series::Scalar;
 
 /// Where a guard falls to zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Fall {
+pub(crate) enum ZeroCrossing {
     /// Nowhere in the step.
     Never,
     /// At this θ.
@@ -18,12 +18,12 @@ pub(crate) enum Fall {
 ///
 /// Conservative advancement: with M an upper bound of |g̈| over a window, no root lies before that of
 /// g + ġ·τ − M·τ²/2. Windows shrink and grow with the moves, so that the bound stays close.
-pub(crate) fn first_fall(
+pub(crate) fn first_crossing(
     guard: &Scalar,
     end: f64,
     order: usize,
     (normal, rounding): (bool, f64),
-) -> Fall {
+) -> ZeroCrossing {
     let c = &guard.0[..=order];
     let swing = c[1..]
         .iter()
@@ -31,7 +31,7 @@ pub(crate) fn first_fall(
         .fold(0.0, |sum, c| (sum + c.abs()) * end);
     // What does not move does not fall either.
     if c[0] > swing || (swing <= rounding && c[0] >= -rounding) {
-        return Fall::Never;
+        return ZeroCrossing::Never;
     }
     let bound = |window: f64| {
         let terms = c.iter().enumerate().skip(2).rev();
@@ -53,14 +53,14 @@ pub(crate) fn first_fall(
             // A force that has just jumped may have left the cone, whichever way it moves now. A
             // normal force that rises has not: the touch was found to round-off only.
             if g < -start_tiny && !(normal && rate > 0.0) {
-                return Fall::At(0.0);
+                return ZeroCrossing::At(0.0);
             }
             if g <= start_tiny {
                 g = 0.0;
             }
         }
         if g <= tiny && rate < 0.0 {
-            return Fall::At(theta);
+            return ZeroCrossing::At(theta);
         }
         let g = g.max(0.0);
         let root = (rate * rate + 2.0 * curvature * g).sqrt();
@@ -77,12 +77,12 @@ pub(crate) fn first_fall(
         let least = if g == 0.0 { 1e-9 * end } else { 0.0 };
         theta += advance.max(least).min(window - theta).max(least);
         if theta >= end {
-            return Fall::Never;
+            return ZeroCrossing::Never;
         }
         if theta >= window {
             window = (theta * 4.0).min(end);
             curvature = bound(window);
         }
     }
-    Fall::ClearUntil(theta)
+    ZeroCrossing::ClearUntil(theta)
 }

@@ -1,11 +1,11 @@
-//! Samples that no plant has made: what closed loops do not reach, of a seeded generator.
+//! Synthetic samples: what closed loops do not reach, of a seeded generator.
 //!
 //! A rotor is led by the hand through moves that are drawn one after the other (rest in the middle, way to the
 //! wall, whirl, rest on the wall, jump, random bits, …), under configurations of the catalogue with times drawn
 //! down to zero, while the bearing is switched, axes fail and ticks are lost.
 
 use super::numbers::Number;
-use super::tape::{Piece, Tape};
+use super::tick_log::{Piece, TickLog};
 use crate::machines::plants::{RATES_HZ, plants};
 use crate::overloads::plan::CatalogueError;
 use rand_chacha::ChaCha8Rng;
@@ -23,15 +23,15 @@ const PIECE_TICKS: usize = 4000;
 ///
 /// # Errors
 /// [`CatalogueError`] if the catalogue is not valid.
-pub(crate) fn made_up(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), CatalogueError> {
-    made_up_by(SEED, number, ticks)
+pub(crate) fn pieces(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), CatalogueError> {
+    seeded(SEED, number, ticks)
 }
 
 /// The same by another seed.
 ///
 /// # Errors
-/// As [`made_up`].
-pub(super) fn made_up_by(
+/// As [`pieces`].
+pub(super) fn seeded(
     seed: u64,
     number: Number,
     ticks: usize,
@@ -49,8 +49,8 @@ pub(super) fn made_up_by(
     let mut left = ticks;
     while left > 0 && !configs.is_empty() {
         let config = varied(configs[chance.below(configs.len())], &mut chance);
-        let tape = Tape::default();
-        let Some(mut supervisor) = number.recorder(&config, &tape) else {
+        let log = TickLog::default();
+        let Some(mut supervisor) = number.recorder(&config, &log) else {
             left_out += 1;
             continue;
         };
@@ -60,7 +60,7 @@ pub(super) fn made_up_by(
             let command = supervisor.tick(&sample);
             hand.sees(command.mode, &mut chance);
         }
-        let ticks = tape.take();
+        let ticks = log.take();
         left -= ticks.len();
         pieces.push(Piece { config, ticks });
     }
@@ -368,7 +368,7 @@ mod tests {
     fn rarest(seed: u64) -> u64 {
         let of = |number| {
             let ticks = Length::QUICK.all - Length::QUICK.closed_loop;
-            let (pieces, _) = made_up_by(seed, number, ticks).unwrap();
+            let (pieces, _) = seeded(seed, number, ticks).unwrap();
             let mut coverage = Coverage::default();
             for piece in &pieces {
                 coverage.merge(&piece.coverage());

@@ -3,9 +3,9 @@
 use super::planes::{figures_of_planes, shapes};
 use super::tables::{tick_tables, track};
 use super::{Examined, findings, used};
+use firmware_bench::record::narrative::{Event, Verdict};
 use firmware_bench::record::remaining::Remaining;
 use firmware_bench::record::replay::Replay;
-use firmware_bench::record::story::{Event, Verdict};
 use firmware_bench::record::ticks::Ticks;
 use firmware_bench::report::lines::Lines;
 use firmware_bench::report::record::{RecordPart, RecordParts};
@@ -20,13 +20,13 @@ const NOT_SIMULATED: &str =
 /// Above the slow track.
 const TRACK: &str = "The largest of each, to the end of the event";
 
-/// What is said of retainer bearings, each by its plane where there are several.
+/// Sentences on retainer bearings, each by its plane where there are several.
 pub(super) fn of_bearings(bearings: &[Remaining]) -> Vec<String> {
-    let told = bearings.iter().map(|bearing| match bearings.len() {
-        1 => bearing.told(),
-        _ => format!("Plane {}. {}", bearing.plane, bearing.told()),
+    let sentences = bearings.iter().map(|bearing| match bearings.len() {
+        1 => bearing.sentences(),
+        _ => format!("Plane {}. {}", bearing.plane, bearing.sentences()),
     });
-    told.collect()
+    sentences.collect()
 }
 
 /// What is wrong with the file, in a sentence; nothing of one that is whole.
@@ -64,22 +64,22 @@ fn circumstances(of: &Examined<'_>) -> Vec<String> {
         )),
         Err(why) => Some(format!("Not replayed: {why}.")),
     };
-    let mut said: Vec<String> = replayed.into_iter().collect();
+    let mut sentences: Vec<String> = replayed.into_iter().collect();
     if head.dropped > 0 {
-        said.push(format!(
+        sentences.push(format!(
             "{} events before this one are in no record: they came while one waited to be read, or had to make room.",
             head.dropped
         ));
     }
     if head.time_us > 0 {
-        said.push(format!(
+        sentences.push(format!(
             "Firmware {}; its clock was {:.6} s at sequence number {}.",
             head.firmware,
             head.time_us as f64 * 1e-6,
             head.at_sequence
         ));
     }
-    said
+    sentences
 }
 
 /// Of a rotor, both planes beside each other, with captions.
@@ -110,27 +110,27 @@ fn tone(verdict: Verdict) -> Tone {
 }
 
 /// As text; `asked`: whether it was to be simulated.
-pub(super) fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> String {
+pub(super) fn text(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> String {
     let event = &of.event;
     let mut out = String::new();
     if let Some(differs) = differs(event) {
         let _ = writeln!(out, "{differs}\n");
     }
-    match event.told() {
-        Some(told) => {
-            let verdict = told.verdict(used(bearings));
-            let verdict = tone(verdict).said(verdict.sentence());
-            let _ = writeln!(out, "{} {verdict}\n", told.sentences());
+    match event.narrative() {
+        Some(narrative) => {
+            let verdict = narrative.verdict(used(bearings));
+            let verdict = tone(verdict).paint(verdict.sentence());
+            let _ = writeln!(out, "{} {verdict}\n", narrative.sentences());
         }
         None => {
             out += "The outcome of the event is not whole in this file, or not there for all planes: no verdict.\n\n";
         }
     }
-    for told in of_bearings(bearings) {
-        let _ = writeln!(out, "{told}\n");
+    for bearing in of_bearings(bearings) {
+        let _ = writeln!(out, "{bearing}\n");
     }
-    for said in circumstances(of) {
-        let _ = writeln!(out, "{said}");
+    for sentence in circumstances(of) {
+        let _ = writeln!(out, "{sentence}");
     }
     for (_, table) in of_planes(of) {
         let _ = writeln!(out, "\n{table}");
@@ -152,8 +152,8 @@ pub(super) fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> St
     }
     if let Some(again) = &of.again {
         let _ = writeln!(out, "\n{}", table::text(&again.scene, &again.results));
-        if let Some(said) = differing(&again.differing) {
-            let _ = writeln!(out, "{said}");
+        if let Some(sentence) = differing(&again.differing) {
+            let _ = writeln!(out, "{sentence}");
         }
     } else if asked {
         let _ = writeln!(out, "\n{NOT_SIMULATED}");
@@ -171,8 +171,8 @@ pub(super) fn parts(events: &[Examined<'_>], asked: bool) -> RecordParts {
             _ => format!("Event {}: ", i + 1),
         };
         parts.above.push(RecordPart {
-            heading: format!("{of_event}What came of it"),
-            said: circumstances(of),
+            heading: format!("{of_event}Outcome"),
+            paragraphs: circumstances(of),
             tables: of_planes(of),
             runs: Vec::new(),
         });
@@ -193,12 +193,12 @@ pub(super) fn parts(events: &[Examined<'_>], asked: bool) -> RecordParts {
             tables.push((TRACK.to_owned(), track(record, units)));
             parts.below.push(RecordPart {
                 heading,
-                said: of_ticks.missing.into_iter().collect(),
+                paragraphs: of_ticks.missing.into_iter().collect(),
                 tables,
                 runs: Vec::new(),
             });
         }
-        let (said, runs) = match &of.again {
+        let (paragraphs, runs) = match &of.again {
             Some(again) => (
                 again
                     .results
@@ -214,7 +214,7 @@ pub(super) fn parts(events: &[Examined<'_>], asked: bool) -> RecordParts {
         };
         parts.below.push(RecordPart {
             heading: format!("{of_event}The event once more"),
-            said,
+            paragraphs,
             tables: Vec::new(),
             runs,
         });

@@ -3,14 +3,14 @@
 use super::coverage::Coverage;
 use firmware_bench::run::controller::Supervise;
 use firmware_image::wire::{
-    COMMAND_BYTES, CommandBits, SAMPLE_BYTES, SampleBits, command_bits, put_command, put_sample,
-    sample_bits,
+    COMMAND_BYTES, CommandBits, SAMPLE_BYTES, SampleBits, command_bits, encode_command,
+    encode_sample, sample_bits,
 };
 use std::cell::RefCell;
 use std::rc::Rc;
 use supervisor::{Command, Config, Mode, Sample};
 
-/// What a supervisor was told and what it commanded, as bytes: equal only with every bit of every number.
+/// Inputs of a supervisor and what it commanded, as bytes: equal only with every bit of every number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tick {
     pub(super) sample: [u8; SAMPLE_BYTES],
@@ -27,8 +27,8 @@ impl Tick {
             command: [0; COMMAND_BYTES],
             mode: command.mode,
         };
-        put_sample(sample, &mut tick.sample);
-        put_command(command, &mut tick.command);
+        encode_sample(sample, &mut tick.sample);
+        encode_command(command, &mut tick.command);
         tick
     }
 }
@@ -38,7 +38,7 @@ impl Tick {
 pub struct Piece {
     /// Its configuration.
     pub config: Config,
-    /// What it was told and what it commanded.
+    /// Its inputs and what it commanded.
     pub ticks: Vec<Tick>,
 }
 
@@ -55,22 +55,22 @@ impl Piece {
 }
 
 /// What passes the border of a supervisor, written down.
-pub type Tape = Rc<RefCell<Vec<Tick>>>;
+pub type TickLog = Rc<RefCell<Vec<Tick>>>;
 
-/// A supervisor of floats with its tape.
+/// A supervisor of floats with its log.
 #[derive(Debug)]
 pub struct Recording {
     /// Whoever supervises.
     pub supervisor: Box<dyn Supervise>,
-    /// What it was told and what it commanded.
-    pub tape: Tape,
+    /// Its inputs and what it commanded.
+    pub log: TickLog,
 }
 
 impl Supervise for Recording {
     fn tick(&mut self, sample: &Sample) -> Command {
         let command = self.supervisor.tick(sample);
         let tick = Tick::new(&sample_bits(sample), &command_bits(&command));
-        self.tape.borrow_mut().push(tick);
+        self.log.borrow_mut().push(tick);
         command
     }
 }

@@ -8,10 +8,10 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use supervisor::{Config, Entry, Events, Mode, Summary};
 
-/// What came of an event, of one plane or of all planes of a rotor together, as far as readings show it that the supervisor
+/// Outcome of an event, of one plane or of all planes of a rotor together, as far as readings show it that the supervisor
 /// believed: what no such reading carries is null.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Told {
+pub struct Narrative {
     /// `levitated` where the levitation controller has the bearing again, else what the supervisor was doing when the record
     /// froze; `coast down` where it asked for that, `bearing off` where the bearing was switched off, `log ends` where a log does.
     pub outcome: &'static str,
@@ -29,7 +29,7 @@ pub struct Told {
     pub whirled: Option<bool>,
     /// By how much the severity index has risen, as far as it was counted.
     pub severity: Option<f64>,
-    /// What it has come to, and what asks for coasting down.
+    /// Its value after the event, and what asks for coasting down.
     pub severity_index: f64,
     /// See `severity_index`.
     pub severity_limit: f64,
@@ -39,7 +39,7 @@ pub struct Told {
     pub coast_down: bool,
     /// For how long the position is unknown, in the plane in which that is longest \[s\].
     pub position_unknown_s: f64,
-    /// Why no speed can be said.
+    /// Why no speed can be given.
     pub speeds_unknown: Option<Doubt>,
     /// The planes in which the position is unknown for some time.
     #[serde(skip)]
@@ -64,7 +64,7 @@ pub enum Doubt {
 }
 
 impl Doubt {
-    fn said(self) -> String {
+    fn message(self) -> String {
         match self {
             Self::BeyondClearance(radius) => format!(
                 "Readings go to {radius:.2} clearances, farther than the retainer bearing lets the rotor go: sensor or clearance is \
@@ -175,8 +175,8 @@ impl RecordFile {
 }
 
 impl PlaneRecord {
-    /// What came of the event here; `None` where that is not whole. `unknown`: where the position is.
-    fn told(&self, unknown: &[Unknown]) -> Option<Told> {
+    /// Its outcome in this plane; `None` where that is not whole. `unknown`: where the position is.
+    fn narrative(&self, unknown: &[Unknown]) -> Option<Narrative> {
         let (summary, config) = (self.summary.as_ref()?, self.config.as_ref()?);
         let whirled = (self.track.iter()).any(|stretch| has_mode(stretch, Mode::BackwardWhirl))
             || (self.entries.values()).any(|entry| entry.mode == Mode::BackwardWhirl as u8);
@@ -207,7 +207,7 @@ impl PlaneRecord {
             doubt,
             whole: self.is_whole(),
         };
-        Some(Told::new(summary, config, seen))
+        Some(Narrative::new(summary, config, seen))
     }
 
     /// How far out readings go that the supervisor believed \[clearances\], where no retainer bearing lets the rotor go so far.
@@ -326,7 +326,7 @@ const BY_CHANCE: i64 = 3;
 /// Clearance and sensor may be wrong by so much without a remark.
 const CLEARANCE_ERROR: f64 = 0.15;
 
-impl Told {
+impl Narrative {
     fn new(summary: &Summary, config: &Config, of: Seen) -> Self {
         let wide = |x: f32| f64::from(x);
         let backward = wide(summary.backward_speed_max_m_s);
@@ -446,11 +446,11 @@ impl Told {
 
     /// What happened, without the verdict.
     pub fn sentences(&self) -> String {
-        let mut said: Vec<String> = self.unseen.iter().map(Unseen::said).collect();
-        said.push(self.happened());
-        said.extend(self.speeds_unknown.map(Doubt::said));
-        said.push(self.counted());
-        said.join(". ") + "."
+        let mut sentences: Vec<String> = self.unseen.iter().map(Unseen::message).collect();
+        sentences.push(self.happened());
+        sentences.extend(self.speeds_unknown.map(Doubt::message));
+        sentences.push(self.counted());
+        sentences.join(". ") + "."
     }
 
     /// What was seen, and how it ended.
@@ -552,7 +552,7 @@ fn capital(text: &str) -> String {
 
 impl Unseen {
     /// When and why, and what is therefore not known.
-    fn said(&self) -> String {
+    fn message(&self) -> String {
         let position = match self.plane {
             Some(plane) => format!("Position of plane {plane}"),
             None => "Position".to_owned(),
@@ -589,27 +589,27 @@ impl Unseen {
 }
 
 impl Event<'_> {
-    /// What came of it; `None` where that is not whole, or not there of all planes.
-    pub fn told(&self) -> Option<Told> {
+    /// Its outcome; `None` where that is not whole, or not there of all planes.
+    pub fn narrative(&self) -> Option<Narrative> {
         if self.records.len() < self.records.first()?.head.planes as usize {
             return None;
         }
-        let all: Option<Vec<Told>> = self.told_of_planes().into_iter().collect();
-        let told = all?.into_iter().reduce(Told::with)?;
-        Some(match self.log_ends && told.outcome == "bearing off" {
-            true => Told {
+        let all: Option<Vec<Narrative>> = self.narratives().into_iter().collect();
+        let narrative = all?.into_iter().reduce(Narrative::with)?;
+        Some(match self.log_ends && narrative.outcome == "bearing off" {
+            true => Narrative {
                 outcome: LOG_ENDS,
-                ..told
+                ..narrative
             },
-            false => told,
+            false => narrative,
         })
     }
 
-    /// What came of it in each plane that is there.
-    pub fn told_of_planes(&self) -> Vec<Option<Told>> {
+    /// Its outcome in each plane that is there.
+    pub fn narratives(&self) -> Vec<Option<Narrative>> {
         let planes = self.records.iter().zip(&self.unknown);
         planes
-            .map(|(record, unknown)| record.told(unknown))
+            .map(|(record, unknown)| record.narrative(unknown))
             .collect()
     }
 }

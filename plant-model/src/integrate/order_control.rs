@@ -32,7 +32,7 @@ pub(crate) fn trusted_theta(order: usize, last: usize, square: impl Fn(usize) ->
 
 /// Whether the series reaches to the end of the span, asked from order to order: its last terms there, so many of them, are
 /// small, by a margin as to the distance.
-pub(crate) struct Enough {
+pub(crate) struct OrderControl {
     /// Square of the end's θ over the margin, and its power for the next order.
     square: f64,
     power: f64,
@@ -41,7 +41,7 @@ pub(crate) struct Enough {
     last: usize,
 }
 
-impl Enough {
+impl OrderControl {
     /// Terms that go on falling so leave one tolerance beyond the lowest order, less beyond a higher one.
     const MARGIN: f64 = 0.8;
 
