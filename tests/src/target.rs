@@ -64,55 +64,41 @@ pub fn at_level(cargo: &mut Command, level: &str, crates: [&str; 2]) {
 ///
 /// # Panics
 /// As [`target`].
-pub fn build_images(target: &str, more: &[&str]) -> Option<Output> {
-    build_some(target, ["--bins".to_owned()], more)
-}
-
-/// Builds some images; the rest as for [`build_images`].
-///
-/// # Panics
-/// As [`target`].
-pub fn build_some(
-    target: &str,
-    bins: impl IntoIterator<Item = String>,
-    more: &[&str],
-) -> Option<Output> {
-    let mut cargo = build(&[target]);
-    cargo.args(bins).args(["--target-dir", "target-fw"]);
-    cargo.args(more);
-    output(cargo, &[target])
+pub fn build_some(target: &str, images: &[&str], more: &[&str]) -> Option<Output> {
+    let mut cargo = build(target, images);
+    cargo.args(["--target-dir", "target-fw"]).args(more);
+    output(cargo, target)
 }
 
 /// The images that are only linked.
 pub const PANIC_FREE: [&str; 2] = ["panic-free", "panic-free-q"];
 
-/// Builds [`PANIC_FREE`] for targets at one of [`OTHER_LEVELS`]; the rest as for [`build_images`].
+/// The same at one of [`OTHER_LEVELS`].
 ///
 /// # Panics
 /// As [`target`].
-pub fn build_panic_free(targets: &[&str], level: &str, more: &[&str]) -> Option<Output> {
-    let mut cargo = build(targets);
+pub fn build_at_level(target: &str, images: &[&str], level: &str, more: &[&str]) -> Option<Output> {
+    let mut cargo = build(target, images);
     at_level(&mut cargo, level, ["amb-supervisor", "firmware-image"]);
-    cargo.args(PANIC_FREE.map(|image| format!("--bin={image}")));
     cargo.args(more);
-    output(cargo, targets)
+    output(cargo, target)
 }
 
-fn build(targets: &[&str]) -> Command {
+fn build(target: &str, images: &[&str]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.current_dir(root());
     command.args(["build", "-p", "firmware-image", "--profile", "fw"]);
-    command.args(targets.iter().flat_map(|target| ["--target", target]));
+    command.args(["--target", target]);
+    command.args(images.iter().map(|image| format!("--bin={image}")));
     command
 }
 
-fn output(mut cargo: Command, targets: &[&str]) -> Option<Output> {
+fn output(mut cargo: Command, target: &str) -> Option<Output> {
     let output = cargo.output().unwrap_or_else(|e| panic!("{e}"));
     let error = String::from_utf8_lossy(&output.stderr);
     if error.contains("target may not be installed") {
-        let targets = targets.join(" or ");
-        skipped(&format!("the Rust target {targets} is not installed"));
+        skipped(&format!("the Rust target {target} is not installed"));
         return None;
     }
     Some(output)

@@ -4,17 +4,18 @@ use object::{Object, ObjectSymbol};
 use std::path::Path;
 use std::process::Output;
 use system_tests::root;
-use system_tests::target::{
-    OTHER_LEVELS, PANIC_FREE, WITHOUT_DEBUG, build_images, build_panic_free, build_some,
-};
+use system_tests::target::{OTHER_LEVELS, PANIC_FREE, WITHOUT_DEBUG, build_at_level, build_some};
 
-const TARGETS: [&str; 3] = [
-    "thumbv7em-none-eabihf",
-    "thumbv7m-none-eabi",
-    "thumbv6m-none-eabi",
+const M4F: &str = "thumbv7em-none-eabihf";
+const M3: &str = "thumbv7m-none-eabi";
+const M0: &str = "thumbv6m-none-eabi";
+/// What each target runs or is measured with, and both that are only linked. Those with `-q` are fixed point, the others floats.
+const IMAGES: [(&str, &[&str]); 3] = [
+    (M4F, &ALL),
+    (M3, &ALL),
+    (M0, &["panic-free", "panic-free-q", "replay-q", "count-q"]),
 ];
-/// Those with `-q` are fixed point, the others floats.
-const IMAGES: [&str; 9] = [
+const ALL: [&str; 10] = [
     "panic-free",
     "panic-free-q",
     "replay",
@@ -22,6 +23,7 @@ const IMAGES: [&str; 9] = [
     "count",
     "count-q",
     "count-pair",
+    "count-half",
     "in-the-loop",
     "timer-interrupt",
 ];
@@ -29,32 +31,33 @@ const IMAGES: [&str; 9] = [
 /// Requirements: SR-32, SR-33
 #[test]
 fn linked_images_hold_no_panic_path() {
-    for target in TARGETS {
-        let Some(output) = build_images(target, &[]) else {
+    for (target, images) in IMAGES {
+        let Some(output) = build_some(target, images, &[]) else {
             return;
         };
         let error = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{error}");
         let folder = root().join("target-fw").join(target).join("fw");
-        for image in IMAGES {
+        for image in images {
             assert_no_panic_in(&folder.join(image));
         }
     }
 }
 
-/// Where the compiler saves size it leaves checks in that it removes for speed.
+/// Where the compiler saves size it leaves checks in that it removes for speed. Floats and fixed point with an FPU, and what has
+/// neither FPU nor division.
 /// Requirement: SR-32
 #[test]
 fn no_level_of_optimisation_leaves_a_panic_path() {
     for level in OTHER_LEVELS {
-        let Some(output) = build_panic_free(&TARGETS, level, &[]) else {
-            return;
-        };
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{level}: {error}");
-        for target in TARGETS {
+        for (target, images) in [(M4F, &PANIC_FREE[..]), (M0, &PANIC_FREE[1..])] {
+            let Some(output) = build_at_level(target, images, level, &[]) else {
+                return;
+            };
+            let error = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{level}: {error}");
             let folder = root().join("target-fw").join(level).join(target).join("fw");
-            for image in PANIC_FREE {
+            for image in images {
                 assert_no_panic_in(&folder.join(image));
             }
         }
@@ -77,19 +80,18 @@ fn assert_no_panic_in(image: &Path) {
 
 const PLANTED: [&str; 3] = ["--features", "planted-panic", "--keep-going"];
 
-/// The check finds a panic that is put in, in every image, and for every target in one that starts and one that does not.
+/// The check finds a panic that is put in, in every kind of image, and for every target.
 /// Requirement: SR-32
 #[test]
 fn a_planted_panic_fails_to_link() {
-    let some: [&[&str]; 3] = [
-        &IMAGES,
-        &["panic-free", "count"],
-        &["panic-free-q", "replay-q"],
+    let some: [(&str, &[&str]); 3] = [
+        (M4F, &["panic-free", "replay", "count", "timer-interrupt"]),
+        (M3, &["in-the-loop"]),
+        (M0, &["panic-free-q"]),
     ];
-    for (target, images) in TARGETS.into_iter().zip(some) {
-        let bins = images.iter().map(|image| format!("--bin={image}"));
+    for (target, images) in some {
         let more = [&PLANTED[..], &WITHOUT_DEBUG].concat();
-        let Some(output) = build_some(target, bins, &more) else {
+        let Some(output) = build_some(target, images, &more) else {
             return;
         };
         assert_none_links(&output, images, target);
@@ -99,11 +101,10 @@ fn a_planted_panic_fails_to_link() {
 /// So it does where the compiler saves size.
 #[test]
 fn a_planted_panic_fails_to_link_at_s() {
-    let target = TARGETS[0];
-    let Some(output) = build_panic_free(&[target], "s", &PLANTED) else {
+    let Some(output) = build_at_level(M4F, &PANIC_FREE, "s", &PLANTED) else {
         return;
     };
-    assert_none_links(&output, &PANIC_FREE, target);
+    assert_none_links(&output, &PANIC_FREE, M4F);
 }
 
 fn assert_none_links(output: &Output, images: &[&str], target: &str) {

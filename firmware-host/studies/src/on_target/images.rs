@@ -1,6 +1,7 @@
 //! Images: built by cargo, found again, and looked into.
 
-use super::machines::{Build, Machine};
+use super::machines::{Build, MACHINES, Machine};
+use super::numbers::Number;
 use object::{Object, ObjectSection, SectionKind};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -64,7 +65,7 @@ impl Project {
         .ok_or_else(|| ImageError::NoProject(folder.to_owned()))
     }
 
-    /// Builds the images for a target; of a build of its own, those that are run or measured of it.
+    /// Builds the images for a target that are run or measured on it.
     ///
     /// # Errors
     /// [`ImageError`].
@@ -79,18 +80,22 @@ impl Project {
             .args(["--target-dir", &build.folder()])
             // What they use is compiled once for all that share it.
             .env("CARGO_BUILD_BUILD_DIR", Build::Usual.folder());
-        let images: &[&str] = match build {
-            Build::Usual => &["--bins"],
+        match build {
+            Build::Usual => {}
             Build::For(processor) => {
                 cargo.env("RUSTFLAGS", format!("-C target-cpu={processor}"));
-                &FLOATS
             }
             Build::Bare => {
                 cargo.arg("--no-default-features");
-                &COUNTED
             }
-        };
-        cargo.args(images);
+        }
+        for machine in (MACHINES.iter()).filter(|m| (m.target, m.build) == (target, build)) {
+            cargo.args(match (machine.number, build) {
+                (Number::Float, Build::Bare) => &COUNTED[..],
+                (Number::Float, _) => &FLOATS,
+                (Number::Fixed, _) => &FIXED,
+            });
+        }
         let output = cargo.output().map_err(ImageError::NoCargo)?;
         if output.status.success() {
             return Ok(());
@@ -151,7 +156,9 @@ const FLOATS: [&str; 6] = [
     "--bin=replay",
     "--bin=in-the-loop",
 ];
-/// Those of them that are not compared with the host.
+/// Images in fixed point that are.
+const FIXED: [&str; 3] = ["--bin=panic-free-q", "--bin=count-q", "--bin=replay-q"];
+/// Those of floats that are not compared with the host.
 const COUNTED: [&str; 4] = [
     "--bin=panic-free",
     "--bin=count",
