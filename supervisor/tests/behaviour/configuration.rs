@@ -7,7 +7,7 @@ use supervisor::{
     RotorSupervisor, Sample, Shaft, ShaftError, Supervisor,
 };
 use test_support::bearing::bearing;
-use test_support::rig::{config, sample, shaft};
+use test_support::rig::{config, config_with, sample, shaft};
 
 const EXAMPLE: Bearing = bearing([50e-6, 10.0, -2e5, 2e-4, 1000.0, 1.6e-4, 0.15, 1e9, 1e-6]);
 
@@ -313,10 +313,7 @@ fn a_slip_that_contradicts_another_value_names_both() {
 #[test]
 fn a_refused_configuration_leaves_everything_as_it_is() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    let wrong = Config {
-        mass_kg: -1.0,
-        ..config()
-    };
+    let wrong = config_with(|c| c.mass_kg = -1.0);
     let error = supervisor.reconfigure(&wrong).unwrap_err();
     assert_eq!(error.parameter().name, "mass_kg");
     let command = supervisor.tick(&sample(0, [1e-6, 2e-6]));

@@ -1,8 +1,8 @@
 //! One coordinate is bad: the other is left to the levitation controller, as long as it makes sense itself.
 
-use supervisor::{Command, Config, Mode, RejectReason, Sample};
+use supervisor::{Command, Mode, RejectReason};
 use test_support::bench::{Bench, WHIRL_STEP};
-use test_support::rig::{RADIUS_M, config, on_circle, sample};
+use test_support::rig::{RADIUS_M, asking, config, config_with, on_circle};
 
 /// Where one coordinate is no number or out of range, the force along it goes to zero in the time of a hand-over, and along
 /// the other the levitation controller acts from the first tick on, bit for bit, whatever it makes of the bad one. Once the
@@ -10,11 +10,7 @@ use test_support::rig::{RADIUS_M, config, on_circle, sample};
 /// Requirement: SR-18
 #[test]
 fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
-    let with = Config {
-        fault_blend_s: 1e-2,
-        position_limit: 4.0,
-        ..config()
-    };
+    let with = config_with(|c| (c.fault_blend_s, c.position_limit) = (1e-2, 4.0));
     // The cap, in 40 ticks.
     let step_n = 25.0;
     for bad in [f32::NAN, f32::NEG_INFINITY, 8.1e-4] {
@@ -32,11 +28,7 @@ fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
                 if both {
                     position_m = [bad; 2];
                 }
-                bench.sequence += 1;
-                bench.supervisor.tick(&Sample {
-                    levitation_n: levitation(i),
-                    ..sample(bench.sequence, position_m)
-                })
+                bench.tick_asking(position_m, levitation(i))
             };
             let last = (1..10).map(|i| tick(i, false)).last().unwrap();
             assert_ne!(last.mode, Mode::SensorFault);
@@ -84,10 +76,7 @@ fn the_coordinate_that_makes_sense_is_left_to_levitation() {
                 1 => [x, y],
                 _ => [RADIUS_M, y],
             };
-            last = bench.supervisor.tick(&Sample {
-                levitation_n: [300.0, 300.0],
-                ..sample(bench.sequence, position_m)
-            });
+            last = (bench.supervisor).tick(&asking(bench.sequence, position_m, [300.0; 2]));
         }
         assert_eq!(last.mode, Mode::SensorFault);
         let good = if kind == 1 { 0.0 } else { 300.0 };
@@ -112,11 +101,8 @@ impl OneLeft {
 
     /// Before the first bad sample.
     fn new(bad: usize, reads_m: f32) -> Self {
-        let with = Config {
-            fault_blend_s: 1e-2,
-            fault_ticks: Self::FAULT as f32,
-            ..config()
-        };
+        let fault_ticks = Self::FAULT as f32;
+        let with = config_with(|c| (c.fault_blend_s, c.fault_ticks) = (1e-2, fault_ticks));
         let (bench, angle) = Bench::whirl(&with);
         Self {
             bench,
@@ -139,13 +125,9 @@ impl OneLeft {
     /// A tick after a step of the good coordinate; the command along it.
     fn tick(&mut self, step_m: f32) -> f32 {
         self.at_m += step_m;
-        self.bench.sequence += 1;
         let mut position_m = [self.at_m; 2];
         position_m[self.bad] = self.reads_m;
-        let command = self.bench.supervisor.tick(&Sample {
-            levitation_n: [Self::LEVITATION_N; 2],
-            ..sample(self.bench.sequence, position_m)
-        });
+        let command = self.bench.tick_asking(position_m, [Self::LEVITATION_N; 2]);
         command.force_n[1 - self.bad]
     }
 
@@ -179,8 +161,7 @@ fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
         for jump_m in [1.01 * LONGEST_STEP_M, -1.01 * LONGEST_STEP_M, 5e-4] {
             let mut left = fresh();
             for share in [0.99, -0.99] {
-                let force_n = left.tick(share * LONGEST_STEP_M);
-                assert_eq!(force_n, OneLeft::LEVITATION_N);
+                assert_eq!(left.tick(share * LONGEST_STEP_M), OneLeft::LEVITATION_N);
             }
             // Out and back.
             for _ in 0..3 {
@@ -232,10 +213,8 @@ fn a_jump_before_the_fault_counts() {
         assert!(left_after(&[]));
         for first in 1..OneLeft::FAULT {
             assert!(!left_after(&[(first, JUMP_M)]), "at {first}");
-            assert!(
-                left_after(&[(first, JUMP_M), (first + 1, -JUMP_M)]),
-                "at {first}"
-            );
+            let back = left_after(&[(first, JUMP_M), (first + 1, -JUMP_M)]);
+            assert!(back, "at {first}");
         }
         // In the tick that makes the fault: for that tick.
         let mut left = OneLeft::new(bad, reads_m);
@@ -319,14 +298,10 @@ fn a_coordinate_is_good_after_samples_of_its_own() {
         let [_, y] = on_circle(RADIUS_M, angle);
         // Near to where x was last seen.
         let x = stays_m + 1e-6 * angle.sin();
-        let position = [
-            if bad[0] { f32::NAN } else { x },
-            if bad[1] { f32::NAN } else { y },
-        ];
-        bench.sequence += u32::from(!again);
-        let mut now = sample(bench.sequence, position);
-        now.levitation_n = [700.0, 0.0];
-        bench.supervisor.tick(&now)
+        let coordinate = |bad: bool, at: f32| if bad { f32::NAN } else { at };
+        let position = [coordinate(bad[0], x), coordinate(bad[1], y)];
+        bench.sequence -= u32::from(again);
+        bench.tick_asking(position, [700.0, 0.0])
     };
     for _ in 0..12 {
         tick([true, false], false);

@@ -2,7 +2,9 @@
 
 use proptest::prelude::*;
 use supervisor::{Command, Config, Events, Mode, Sample, Status, Supervisor};
-use test_support::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample};
+use test_support::rig::{
+    RADIUS_M, WHIRL_STEP, config, config_with, on_circle, sample, sample_with, ticks_of,
+};
 
 /// What a drive makes of a command \[N\].
 type Makes = fn([f32; 2]) -> [f32; 2];
@@ -31,9 +33,10 @@ impl Bench {
     /// A tick in a whirl; the amplifier gets what the drive makes of the command.
     fn tick(&mut self, makes: Makes, status: Status) -> Command {
         let position_m = on_circle(RADIUS_M, WHIRL_STEP * (self.sequence + 1) as f32);
-        let mut now = sample(0, position_m);
-        now.status |= status;
-        self.tick_of(now, makes)
+        self.tick_of(
+            sample_with(0, position_m, |now| now.status |= status),
+            makes,
+        )
     }
 
     /// A tick with the next number and the force that is delivered.
@@ -64,13 +67,10 @@ const OBEYS: Makes = |force| force;
 /// A sample of a rotor in the middle, with what levitation commands and the force that is measured.
 fn in_the_middle(sequence: u32, levitation_n: [f32; 2], applied_n: [f32; 2]) -> Sample {
     let position_m = [5, 7].map(|turns| 1e-6 * (sequence % turns) as f32);
-    let now = sample(sequence, position_m);
-    Sample {
-        status: now.status | Status::APPLIED_VALID,
-        levitation_n,
-        applied_n,
-        ..now
-    }
+    sample_with(sequence, position_m, |now| {
+        now.status |= Status::APPLIED_VALID;
+        (now.levitation_n, now.applied_n) = (levitation_n, applied_n);
+    })
 }
 
 proptest! {
@@ -87,7 +87,7 @@ proptest! {
         fault_ticks in 5..20_u32,
         commands in prop::collection::vec(([-1000.0..1000.0_f32, -1000.0..1000.0_f32], 1..40_u32), 1..60),
     ) {
-        let with = Config { fault_ticks: fault_ticks as f32, ..config() };
+        let with = config_with(|c| c.fault_ticks = fault_ticks as f32);
         let mut bench = Bench::new(&with, lag * with.amplifier_lag_s, delay);
         for (levitation_n, ticks) in commands {
             for _ in 0..ticks {
@@ -106,10 +106,7 @@ proptest! {
 #[test]
 fn a_slow_drive_is_left_alone() {
     for sample_period_s in [20e-6_f32, 50e-6, 100e-6] {
-        left_alone(&Config {
-            sample_period_s,
-            ..config()
-        });
+        left_alone(&config_with(|c| c.sample_period_s = sample_period_s));
     }
 }
 
@@ -143,25 +140,18 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
         ("y stuck", |[x, _]| [x, 900.0], [false, true]),
     ];
     for (name, makes, wrong) in drives {
-        let with = Config {
-            fault_ticks: 5.0,
-            ..config()
-        };
+        let with = config_with(|c| c.fault_ticks = 5.0);
         let mut bench = Bench::new(&with, with.amplifier_lag_s, 1);
         for _ in 0..300 {
             let command = bench.tick(OBEYS, Status::APPLIED_VALID);
             assert!(!command.events.contains(Events::AXIS_LOST), "{name}");
         }
-        let commands: Vec<_> = (0..500)
-            .map(|i| match i {
-                // A tick without a measured force ends no rest.
-                _ if i % 100 == 99 => bench.tick(makes, Status::empty()),
-                _ => bench.tick(makes, Status::APPLIED_VALID),
-            })
-            .collect();
-        let with = |event| commands.iter().filter(move |c| c.events.contains(event));
-        assert!(with(Events::AXIS_LOST).count() >= 3, "{name}");
-        assert!(with(Events::AXIS_BACK).count() >= 3, "{name}: tried again");
+        // A tick without a measured force ends no rest.
+        let measured = |i| [Status::APPLIED_VALID, Status::empty()][usize::from(i % 100 == 99)];
+        let commands: Vec<_> = (0..500).map(|i| bench.tick(makes, measured(i))).collect();
+        let told = |event| ticks_of(&commands, event).len();
+        assert!(told(Events::AXIS_LOST) >= 3, "{name}");
+        assert!(told(Events::AXIS_BACK) >= 3, "{name}: tried again");
         assert!(commands.iter().all(|c| c.mode != Mode::SensorFault));
         for (axis, wrong) in wrong.into_iter().enumerate() {
             let zero: Vec<bool> = commands.iter().map(|c| c.force_n[axis] == 0.0).collect();
@@ -174,11 +164,9 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
             assert!(first.is_some_and(|i| i <= 70), "{name}: {first:?}");
         }
         // In order again, it is believed again.
-        let after: Vec<_> = (0..200)
-            .map(|_| bench.tick(OBEYS, Status::APPLIED_VALID))
-            .collect();
-        let lost = |c: &Command| c.events.contains(Events::AXIS_LOST);
-        assert!(!after[60..].iter().any(lost), "{name}");
+        let tick = |_| bench.tick(OBEYS, Status::APPLIED_VALID);
+        let after: Vec<_> = (0..200).map(tick).collect();
+        assert_eq!(ticks_of(&after[60..], Events::AXIS_LOST).len(), 0, "{name}");
     }
 }
 
@@ -242,10 +230,7 @@ fn what_the_bearing_carries_at_first_is_believed() {
 /// Nothing is expected of an axis that is reported lost: what is left of its force dies away, and when it is back, it is.
 #[test]
 fn an_axis_that_is_reported_lost_is_not_judged() {
-    let with = Config {
-        fault_ticks: 2.0,
-        ..config()
-    };
+    let with = config_with(|c| c.fault_ticks = 2.0);
     let mut supervisor = Supervisor::<64>::new(&with).unwrap();
     let mut applied_n = [900.0, 0.0];
     for i in 0..200 {
@@ -270,9 +255,11 @@ fn off_and_on_ends_a_rest() {
         assert!(ticks.any(|command| command.events.contains(Events::AXIS_LOST)));
         bench.sequence += 1;
         let position_m = on_circle(RADIUS_M, WHIRL_STEP * bench.sequence as f32);
-        let mut off = sample(bench.sequence, position_m);
-        off.status = (off.status | measured) - Status::BEARING_ON;
-        bench.supervisor.tick(&off);
+        bench
+            .supervisor
+            .tick(&sample_with(bench.sequence, position_m, |off| {
+                off.status = (off.status | measured) - Status::BEARING_ON;
+            }));
         // A turn of the whirl: both axes are needed.
         let mut largest_n = [0.0_f32; 2];
         for _ in 0..63 {
@@ -309,19 +296,15 @@ fn in_shadow_nothing_is_taken_from_the_levitation_controller() {
 #[test]
 fn an_axis_is_lost_and_tried_again_after_its_time_to_the_tick() {
     for fault_ticks in [2, 5, 15, 40] {
-        let with = Config {
-            fault_ticks: fault_ticks as f32,
-            ..config()
-        };
+        let with = config_with(|c| c.fault_ticks = fault_ticks as f32);
         let mut supervisor = Supervisor::<64>::new(&with).unwrap();
         let obeys_until = 100;
-        let commands: Vec<_> = (0..obeys_until + 200)
-            .map(|i| {
-                let applied_n = if i < obeys_until { 500.0 } else { -500.0 };
-                supervisor.tick(&in_the_middle(i, [500.0, 0.0], [applied_n, 0.0]))
-            })
-            .collect();
-        let first = |event| (commands.iter().position(|c| c.events.contains(event))).unwrap();
+        let ticks = (0..obeys_until + 200).map(|i| {
+            let applied_n = if i < obeys_until { 500.0 } else { -500.0 };
+            supervisor.tick(&in_the_middle(i, [500.0, 0.0], [applied_n, 0.0]))
+        });
+        let commands: Vec<_> = ticks.collect();
+        let first = |event| ticks_of(&commands, event)[0];
         let (lost, back) = (first(Events::AXIS_LOST), first(Events::AXIS_BACK));
         // Nothing from the tick after the last of them on.
         let ticks = fault_ticks.min(15);

@@ -109,10 +109,8 @@ fn a_toggling_coordinate_is_not_stuck() {
         for i in 0..3000_u32 {
             let step = |k: u32| 1e-6 * pattern[(k % 4) as usize] as f32;
             let command = supervisor.tick(&sample(i, [step(i), step(i / 2 + 1)]));
-            assert!(
-                !command.limits.contains(Limits::SAMPLE_REFUSED),
-                "{pattern:?} tick {i}"
-            );
+            let refused = command.limits.contains(Limits::SAMPLE_REFUSED);
+            assert!(!refused, "{pattern:?} tick {i}");
             assert_eq!(supervisor.report().refusal, RejectReason::None);
         }
     }
@@ -140,9 +138,9 @@ fn a_change_beside_a_bad_coordinate_is_a_change() {
     for still in 0..2 {
         let mut bench = Bench::new(&config());
         let mut position_m = [0.0; 2];
-        let on = |by: [f32; 2], position_m: &mut [f32; 2]| {
-            *position_m = [position_m[0] + by[0], position_m[1] + by[1]];
-            *position_m
+        let on = |by: [f32; 2], from: &mut [f32; 2]| {
+            *from = [from[0] + by[0], from[1] + by[1]];
+            *from
         };
         for _ in 0..50 {
             bench.tick(on([2e-6; 2], &mut position_m));
@@ -195,21 +193,15 @@ fn a_stuck_sensor_is_not_believed_before_it_changes() {
     let good_after = |read_m: &dyn Fn([f32; 2], u32) -> [f32; 2]| {
         let (mut bench, angle) = Bench::whirl(&config());
         let last = on_circle(RADIUS_M, angle);
-        for _ in 0..500 {
-            bench.tick(last);
-        }
+        bench.ticks(500, last);
         assert_eq!(bench.supervisor.mode(), Mode::SensorFault);
         assert_eq!(bench.supervisor.report().fault, RejectReason::Stuck);
         let mut ticks = 1..100;
         ticks.find(|i| bench.tick(read_m(last, *i)).mode != Mode::SensorFault)
     };
     // x changes at 5, y at 8.
-    let one_by_one = good_after(&|[x, y], i| {
-        [
-            x - if i < 5 { 0.0 } else { 1e-7 },
-            y - if i < 8 { 0.0 } else { 1e-7 },
-        ]
-    });
+    let step_m = |i: u32, at: u32| if i < at { 0.0 } else { 1e-7 };
+    let one_by_one = good_after(&|[x, y], i| [x - step_m(i, 5), y - step_m(i, 8)]);
     assert_eq!(one_by_one, Some(8 + 9), "ten from the second change on");
     // At rest somewhere else: one sample that is too far from the frozen one, and ten good ones at most.
     let at_rest = good_after(&|_, _| [-RADIUS_M, 3e-6]);
