@@ -163,10 +163,8 @@ fn check(report: &Report, config: &Config, last_place: f64) {
 fn keeps_every_limit<D: Driven>(ticks: u64) {
     let modes = drive::<D>(ticks);
     let whirls = modes[Mode::BackwardWhirl as usize] > ticks / 20;
-    assert!(
-        whirls && modes.iter().all(|count| *count > ticks / 200),
-        "{modes:?}"
-    );
+    let each = modes.iter().all(|count| *count > ticks / 200);
+    assert!(whirls && each, "{modes:?}");
 }
 
 /// Requirements: SR-01, SR-02, SR-03
@@ -269,11 +267,8 @@ fn mirrored_samples_give_mirrored_commands() {
                 ..here
             };
             let (a, b) = (left.tick(&here), right.tick(&there));
-            assert_eq!(
-                (a.mode, [-a.force[0], a.force[1]]),
-                (b.mode, b.force),
-                "tick {i} of {seed}"
-            );
+            let mirrored = (a.mode, [-a.force[0], a.force[1]]);
+            assert_eq!(mirrored, (b.mode, b.force), "tick {i} of {seed}");
         }
     }
 }

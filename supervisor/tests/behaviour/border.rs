@@ -175,11 +175,8 @@ fn an_implausible_applied_force_is_not_believed() {
 #[test]
 fn positions_are_carried_to_the_plane_of_the_retainer_bearing() {
     let run = |ratio: f32| {
-        let with = Config {
-            retainer_plane_ratio: ratio,
-            sensor_step_m: 1e-6 / ratio,
-            ..config()
-        };
+        let step_m = 1e-6 / ratio;
+        let with = config_with(|c| (c.retainer_plane_ratio, c.sensor_step_m) = (ratio, step_m));
         let mut supervisor = Supervisor::<64>::new(&with).unwrap();
         // A record is frozen once the event is over.
         let commands: Vec<Command> = (0..1000_u32)

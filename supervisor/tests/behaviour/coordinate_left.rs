@@ -200,16 +200,15 @@ fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
 #[test]
 fn a_jump_before_the_fault_counts() {
     const JUMP_M: f32 = 6e-4;
-    let at = |ticks: &[(usize, f32)]| {
+    let at = |jumps: &[(usize, f32)]| {
         let mut steps_m = [1e-6; OneLeft::FAULT];
-        for (tick, step_m) in ticks {
-            steps_m[tick - 1] = *step_m;
-        }
+        jumps
+            .iter()
+            .for_each(|(tick, step_m)| steps_m[tick - 1] = *step_m);
         steps_m
     };
     for (bad, reads_m) in BAD {
-        let left_after =
-            |ticks: &[(usize, f32)]| OneLeft::new(bad, reads_m).is_left_after(at(ticks));
+        let left_after = |jumps: &[_]| OneLeft::new(bad, reads_m).is_left_after(at(jumps));
         assert!(left_after(&[]));
         for first in 1..OneLeft::FAULT {
             assert!(!left_after(&[(first, JUMP_M)]), "at {first}");

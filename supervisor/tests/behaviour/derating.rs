@@ -18,11 +18,11 @@ fn the_cap_follows_the_thermal_state() {
             1000.0 - (1000.0 - continuous) * x * x * (3.0 - 2.0 * x)
         };
         let mut tick = |i: u32, wanted_n: f32| {
-            let command = supervisor.tick(&asking(
-                i,
+            let (at_m, asked_n) = (
                 [1e-8 * (i % 100) as f32, 0.0],
-                [0.6 * wanted_n, -0.8 * wanted_n],
-            ));
+                [0.6, -0.8].map(|x| x * wanted_n),
+            );
+            let command = supervisor.tick(&asking(i, at_m, asked_n));
             (command, supervisor.report())
         };
         let start = (1000.0 / continuous).powi(2);
@@ -122,11 +122,8 @@ fn takes_over(warm_ticks: u32) -> (f64, f64) {
     let mut supervisor = Supervisor::<16>::new(&config).unwrap();
     for i in 0..warm_ticks {
         let force_n = if i % 2 == 0 { 1000.0 } else { -1000.0 };
-        supervisor.tick(&asking(
-            i,
-            [FIRST * 2e-4 + 1e-8 * (i % 100) as f32, 0.0],
-            [0.0, force_n],
-        ));
+        let at_m = [FIRST * 2e-4 + 1e-8 * (i % 100) as f32, 0.0];
+        supervisor.tick(&asking(i, at_m, [0.0, force_n]));
     }
     let way_m = SPEED_M_S * config.sample_period_s;
     for i in 0.. {

@@ -33,10 +33,8 @@ impl Bench {
     /// A tick in a whirl; the amplifier gets what the drive makes of the command.
     fn tick(&mut self, makes: Makes, status: Status) -> Command {
         let position_m = on_circle(RADIUS_M, WHIRL_STEP * (self.sequence + 1) as f32);
-        self.tick_of(
-            sample_with(0, position_m, |now| now.status |= status),
-            makes,
-        )
+        let now = sample_with(0, position_m, |now| now.status |= status);
+        self.tick_of(now, makes)
     }
 
     /// A tick with the next number and the force that is delivered.
@@ -193,11 +191,7 @@ fn what_the_bearing_carries_at_first_is_believed() {
     let held_n = [-900.0, 400.0];
     let against_n = held_n.map(|force_n: f32| -force_n);
     for delay_samples in [0.0, 1.0, 3.0, 7.0] {
-        let with = Config {
-            delay_samples,
-            fault_ticks: 2.0,
-            ..config()
-        };
+        let with = config_with(|c| (c.delay_samples, c.fault_ticks) = (delay_samples, 2.0));
         for (what, ticks, status, gap) in [
             ("start", 0, Status::empty(), 0),
             ("measured late", 100, Status::APPLIED_VALID, 0),
@@ -255,11 +249,9 @@ fn off_and_on_ends_a_rest() {
         assert!(ticks.any(|command| command.events.contains(Events::AXIS_LOST)));
         bench.sequence += 1;
         let position_m = on_circle(RADIUS_M, WHIRL_STEP * bench.sequence as f32);
-        bench
-            .supervisor
-            .tick(&sample_with(bench.sequence, position_m, |off| {
-                off.status = (off.status | measured) - Status::BEARING_ON;
-            }));
+        let status = |s: Status| (s | measured) - Status::BEARING_ON;
+        let off = sample_with(bench.sequence, position_m, |s| s.status = status(s.status));
+        bench.supervisor.tick(&off);
         // A turn of the whirl: both axes are needed.
         let mut largest_n = [0.0_f32; 2];
         for _ in 0..63 {

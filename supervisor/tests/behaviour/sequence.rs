@@ -111,11 +111,8 @@ fn repeated_gaps_do_not_engage() {
         let mut supervisor = Supervisor::<16>::new(&config()).unwrap();
         for i in 0..3000_u32 {
             let noise = |k: u32| 1e-6 * ((f64::from(i + k) * 0.618_034).fract() as f32 - 0.5);
-            let command = supervisor.tick(&asking(
-                i + i / good * missed,
-                [noise(0), noise(1000)],
-                [100.0, 0.0],
-            ));
+            let (sequence, at_m) = (i + i / good * missed, [noise(0), noise(1000)]);
+            let command = supervisor.tick(&asking(sequence, at_m, [100.0, 0.0]));
             assert_eq!(command.mode, Mode::Levitated, "{missed} after {good}");
         }
     }

@@ -176,11 +176,7 @@ fn whirl_beyond_the_limit_asks_once_to_coast_down() {
 /// Requirement: SR-27
 #[test]
 fn a_severity_index_beyond_its_limit_asks_once_to_coast_down() {
-    let with = Config {
-        severity_limit: 3.0,
-        coast_down_s: 100.0,
-        ..config()
-    };
+    let with = config_with(|c| (c.severity_limit, c.coast_down_s) = (3.0, 100.0));
     let mut supervisor = Supervisor::new(&with).unwrap();
     let mut indices = Vec::new();
     for i in 0..2000 {
@@ -226,11 +222,9 @@ fn a_limit_that_is_lowered_below_the_index_asks() {
 #[test]
 fn the_request_to_coast_down_comes_after_its_time_to_the_tick() {
     for ticks in [0, 1, 20, 100] {
-        let with = Config {
-            // Half a tick more, out of the way of rounding.
-            coast_down_s: (ticks as f32 + 0.5) * config().sample_period_s,
-            ..config()
-        };
+        // Half a tick more, out of the way of rounding.
+        let coast_down_s = (ticks as f32 + 0.5) * config().sample_period_s;
+        let with = config_with(|c| c.coast_down_s = coast_down_s);
         let mut supervisor = Supervisor::new(&with).unwrap();
         let commands = whirl_by(1.2 * WHIRL_STEP, &mut supervisor, 0..300, Status::empty());
         let asked = asked(&commands)[0];

@@ -11,11 +11,8 @@ fn held(outwards_n: impl Fn(u32, f32) -> f32, most: u32) -> u32 {
     for i in 0..most {
         let out_m = (8e-6 * i.saturating_sub(20) as f32).min(1.2e-4);
         let noise_m = 4e-7 * (i % 3) as f32;
-        let command = supervisor.tick(&asking(
-            i,
-            [out_m + noise_m, noise_m],
-            [outwards_n(i, own_n), 0.0],
-        ));
+        let (at_m, asked_n) = ([out_m + noise_m, noise_m], [outwards_n(i, own_n), 0.0]);
+        let command = supervisor.tick(&asking(i, at_m, asked_n));
         own_n = command.force_n[0];
         match (command.mode, engaged_at) {
             (Mode::Approach, None) => engaged_at = Some(i),
