@@ -131,6 +131,20 @@ impl OneLeft {
         command.force_n[1 - self.bad]
     }
 
+    /// Whether all that the levitation controller asks for along the good coordinate goes through, in a tick after a step of it.
+    fn passes(&mut self, step_m: f32) -> bool {
+        let force_n = self.tick(step_m);
+        assert!(force_n <= Self::LEVITATION_N, "{force_n}");
+        force_n == Self::LEVITATION_N
+    }
+
+    /// As many samples that fit to each other as end a fault but for one: none of them does.
+    fn does_not_pass_yet(&mut self) {
+        for _ in 1..Self::FAULT {
+            assert!(!self.passes(1e-6));
+        }
+    }
+
     /// Whether the levitation controller acts along the good coordinate in the first tick of the fault, after these steps of it.
     fn is_left_after(&mut self, steps_m: [f32; Self::FAULT]) -> bool {
         let force_n = steps_m.map(|step_m| self.tick(step_m));
@@ -160,14 +174,13 @@ fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
         let fresh = || OneLeft::in_fault(bad, reads_m);
         for jump_m in [1.01 * LONGEST_STEP_M, -1.01 * LONGEST_STEP_M, 5e-4] {
             let mut left = fresh();
-            for share in [0.99, -0.99] {
-                assert_eq!(left.tick(share * LONGEST_STEP_M), OneLeft::LEVITATION_N);
-            }
+            let can = [0.99, -0.99].map(|share| left.passes(share * LONGEST_STEP_M));
+            assert_eq!(can, [true; 2]);
             // Out and back.
             for _ in 0..3 {
                 let off_n = OneLeft::LEVITATION_N - left.tick(jump_m);
                 assert!((off_n - OneLeft::FADED_N).abs() < 0.1, "{off_n} N");
-                assert_eq!(left.tick(-jump_m), OneLeft::LEVITATION_N);
+                assert!(left.passes(-jump_m));
             }
             // Out, and from there on: until as many samples as end a fault fit to each other.
             for i in 1..2 + OneLeft::FAULT {
@@ -175,23 +188,19 @@ fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
                 let faded_n = OneLeft::LEVITATION_N - OneLeft::FADED_N * i as f32;
                 assert!((force_n - faded_n).abs() < 0.1, "{i}: {force_n} N");
             }
-            assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
-            assert!(left.tick(jump_m) < OneLeft::LEVITATION_N);
-            assert_eq!(left.tick(-jump_m), OneLeft::LEVITATION_N);
+            assert!(left.passes(1e-6));
+            assert!(!left.passes(jump_m));
+            assert!(left.passes(-jump_m));
         }
-        // Too far for one tick, but not for the two since the last one that fitted.
+        // Too far for one tick, but not for the two since the last one that fitted; as far as in three ticks, and the three
+        // before count for the next one; after a gap nothing can be compared. Ticks that are missed, and such steps.
         let mut left = fresh();
-        assert!(left.tick(1.9 * LONGEST_STEP_M) < OneLeft::LEVITATION_N);
-        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
-        // As far as in three ticks; and the three before count for the next one.
-        left.bench.sequence += 2;
-        assert_eq!(left.tick(2.9 * LONGEST_STEP_M), OneLeft::LEVITATION_N);
-        left.bench.sequence += 2;
-        assert!(left.tick(3.1 * LONGEST_STEP_M) < OneLeft::LEVITATION_N);
-        assert_eq!(left.tick(0.8 * LONGEST_STEP_M), OneLeft::LEVITATION_N);
-        // After a gap nothing can be compared.
-        left.bench.sequence += 20;
-        assert_eq!(left.tick(5e-4), OneLeft::LEVITATION_N);
+        let rows = [(0, 1.9), (0, 0.01), (2, 2.9), (2, 3.1), (0, 0.8), (20, 5.0)];
+        let passes = rows.map(|(missed, steps)| {
+            left.bench.sequence += missed;
+            left.passes(steps * LONGEST_STEP_M)
+        });
+        assert_eq!(passes, [false, true, true, false, true, true]);
     }
 }
 
@@ -218,7 +227,7 @@ fn a_jump_before_the_fault_counts() {
         // In the tick that makes the fault: for that tick.
         let mut left = OneLeft::new(bad, reads_m);
         assert!(!left.is_left_after(at(&[(OneLeft::FAULT, JUMP_M)])));
-        assert_eq!(left.tick(-JUMP_M), OneLeft::LEVITATION_N);
+        assert!(left.passes(-JUMP_M));
     }
 }
 
@@ -230,20 +239,16 @@ fn a_coordinate_that_fits_for_long_is_good_again() {
         for interrupted in 0..3 {
             let mut left = OneLeft::in_fault(bad, reads_m);
             left.bench.sequence -= 1;
-            assert!(left.tick(1e-6) < OneLeft::LEVITATION_N, "a repeated number");
-            for _ in 1..OneLeft::FAULT {
-                assert!(left.tick(1e-6) < OneLeft::LEVITATION_N);
-            }
+            assert!(!left.passes(1e-6), "a repeated number");
+            left.does_not_pass_yet();
             // The last one but for which it would be good.
             if interrupted > 0 {
                 left.bench.sequence -= u32::from(interrupted == 1);
                 let step_m = if interrupted == 2 { 5e-4 } else { 1e-6 };
-                assert!(left.tick(step_m) < OneLeft::LEVITATION_N);
-                for _ in 1..OneLeft::FAULT {
-                    assert!(left.tick(1e-6) < OneLeft::LEVITATION_N);
-                }
+                assert!(!left.passes(step_m));
+                left.does_not_pass_yet();
             }
-            assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N, "{interrupted}");
+            assert!(left.passes(1e-6), "{interrupted}");
         }
     }
 }
@@ -268,7 +273,7 @@ fn a_coordinate_that_is_stuck_is_not_good_again() {
         for _ in 1..OneLeft::FAULT {
             assert_eq!(left.tick(1e-6), 0.0);
         }
-        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
+        assert!(left.passes(1e-6));
     }
 }
 
@@ -278,12 +283,12 @@ fn a_good_sample_between_two_jumps_parts_them() {
     for (bad, reads_m) in BAD {
         let mut left = OneLeft::in_fault(bad, reads_m);
         for _ in 0..5 {
-            assert!(left.tick(5e-4) < OneLeft::LEVITATION_N);
+            assert!(!left.passes(5e-4));
             left.reads_m = 1e-5;
             left.tick(-5e-4);
             left.reads_m = reads_m;
         }
-        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
+        assert!(left.passes(1e-6));
     }
 }
 

@@ -1,11 +1,10 @@
 //! The ledger of landings: what it adds up, what it says is left, and what it makes of bytes that are none of its own.
 
 use supervisor::{
-    Core, LEDGER_BYTES, Ledger, LedgerError, Prepared, Q, RotorSupervisor, Summary, Supervisor,
-    crc_of,
+    Core, LEDGER_BYTES, Ledger, LedgerError, Prepared, Q, Summary, Supervisor, crc_of,
 };
 use test_support::in_numbers;
-use test_support::rig::{LANDING_TICKS as LANDING, config, landing, sample, shaft};
+use test_support::rig::{LANDING_TICKS as LANDING, config, landing, new_rotor, quiet, sample};
 
 /// Totals since the supervisor was made, as the record of an event has them.
 fn totals(landings: u32, severity_index: f32) -> Summary {
@@ -80,11 +79,11 @@ fn landings_without_a_record_are_in_the_ledger() {
 fn every_kind_of_record_can_be_added() {
     let mut core = Core::<Q, 64>::new(&Prepared::new(&config()).unwrap());
     let scaling = config().scaling();
-    let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = new_rotor(&config());
     for i in 0..LANDING {
         let at = sample(i, landing(i));
         core.tick(&in_numbers(&scaling.sample(&at)));
-        rotor.tick(&[at, sample(i, [1e-6 * (i % 3) as f32; 2])]);
+        rotor.tick(&[at, sample(i, quiet(i))]);
     }
     let mut ledgers = [1, 2, 3].map(|bearing| Ledger::new(bearing, 20.0));
     let [of_core, first, second] = &mut ledgers;
