@@ -17,14 +17,12 @@ struct Machine {
     commanded_n: [f64; 2],
     last_m: [f64; 2],
     angle_rad: f64,
-    spin_rad_s: f64,
     noise: u32,
 }
 
 impl Machine {
     fn new() -> Self {
         Self {
-            spin_rad_s: SPIN_RAD_S,
             noise: 1,
             ..Self::default()
         }
@@ -51,8 +49,8 @@ impl Machine {
         let c = Config::example();
         let part_s = TICK_S / f64::from(PARTS);
         for _ in 0..PARTS {
-            self.angle_rad += self.spin_rad_s * part_s;
-            let unbalance_n = 10.0 * 4e-6 * self.spin_rad_s.powi(2);
+            self.angle_rad += SPIN_RAD_S * part_s;
+            let unbalance_n = 10.0 * 4e-6 * SPIN_RAD_S.powi(2);
             let turning = [self.angle_rad.cos(), self.angle_rad.sin()].map(|x| unbalance_n * x);
             for (axis, turning) in turning.into_iter().enumerate() {
                 let to = self.commanded_n[axis] - self.force_n[axis];

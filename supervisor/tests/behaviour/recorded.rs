@@ -76,38 +76,23 @@ fn engaged_in(record: &Record<'_, f32, 64>) -> Option<usize> {
 fn an_engagement_without_contact_does_not_spend_the_record() {
     let mut bench = Bench::new(&config());
     let mut chance = Chance::new(13);
-    let mut at = |r: f32| [r * C_M + noise(&mut chance, 2e-7), noise(&mut chance, 2e-7)];
-    for _ in 0..400 {
-        bench.tick(at(0.0));
-    }
+    let mut goes = |bench: &mut Bench, ticks: u32, radius: &dyn Fn(u32) -> f32| {
+        let mut noise = || noise(&mut chance, 2e-7);
+        let commands = (0..ticks).map(|i| bench.tick([radius(i) * C_M + noise(), noise()]));
+        commands.collect::<Vec<_>>()
+    };
+    goes(&mut bench, 400, &|_| 0.0);
     // Towards the wall, and back before it.
-    let mut engaged = 0;
-    for i in 0..30 {
-        let command = bench.tick(at(0.03 * i as f32));
-        engaged += u32::from(command.events.contains(Events::ENGAGED));
-    }
-    for i in (0..30).rev() {
-        bench.tick(at(0.03 * i as f32));
-    }
-    assert_eq!(engaged, 1);
-    let mut ticks = 0;
-    while bench.supervisor.mode() != Mode::Levitated {
-        bench.tick(at(0.0));
-        ticks += 1;
-        assert!(ticks < 2000);
-    }
-    for _ in 0..2000 {
-        bench.tick(at(0.0));
-    }
+    let towards = goes(&mut bench, 30, &|i| 0.03 * i as f32);
+    assert_eq!(ticks_of(&towards, Events::ENGAGED).len(), 1);
+    goes(&mut bench, 30, &|i| 0.03 * (29 - i) as f32);
+    let back = goes(&mut bench, 4000, &|_| 0.0);
+    assert!(back[2000..].iter().all(|c| c.mode == Mode::Levitated));
     let report = bench.supervisor.report();
     assert_eq!((report.nuisance_engagements, report.landings), (1, 0));
     assert!(bench.supervisor.record().is_none());
-    for i in 0..60 {
-        bench.tick(at((0.05 * i as f32).min(1.03)));
-    }
-    for _ in 0..2000 {
-        bench.tick(at(0.0));
-    }
+    goes(&mut bench, 60, &|i| (0.05 * i as f32).min(1.03));
+    goes(&mut bench, 2000, &|_| 0.0);
     let report = bench.supervisor.report();
     assert_eq!((report.nuisance_engagements, report.landings), (1, 1));
     let record = bench.supervisor.record().expect("this one is worth it");

@@ -31,19 +31,27 @@ fn led(tick: u32, from: u32) -> [f32; 2] {
     on_circle(share * RADIUS_M, WHIRL_STEP * turns as f32)
 }
 
+/// A sample of a sensor that does not stand still to the last digit.
+fn noisy(tick: u32, position_m: [f32; 2]) -> Sample {
+    sample(tick, position_m.map(|x| x + quiet(tick)[0]))
+}
+
+/// A plane of a rotor that knows nothing of the other.
+fn alone(shaft: &Shaft, end: usize, config: &Config) -> Supervisor<RECORD> {
+    Supervisor::new(&shaft.plane(end, config)).unwrap()
+}
+
 /// Ticks of both ends, each led from a tick on; `None`: it stays in the middle.
 fn run(
     rotor: &mut RotorSupervisor<RECORD>,
     ticks: std::ops::Range<u32>,
     from: [Option<u32>; 2],
 ) -> Vec<RotorCommand> {
-    ticks
-        .map(|i| {
-            let at = |from: Option<u32>| from.map_or([0.0; 2], |from| led(i, from));
-            let [noise, _] = quiet(i);
-            rotor.tick(&from.map(|from| sample(i, at(from).map(|x| x + noise))))
-        })
-        .collect()
+    let tick = |i| {
+        let at = |from: Option<u32>| from.map_or([0.0; 2], |from| led(i, from));
+        rotor.tick(&from.map(|from| noisy(i, at(from))))
+    };
+    ticks.map(tick).collect()
 }
 
 fn engaged_at(commands: &[RotorCommand], end: usize) -> Option<usize> {
@@ -60,13 +68,11 @@ fn two_halves_are_a_tick() {
     let (mut engaged, mut frozen) = (false, 0);
     for i in 0..1200 {
         // One end is led out at two times, the other in between, and both are unlike.
-        let noise = 1e-6 * (i % 3) as f32;
         let at = |from: [u32; 2]| {
             let from = from.into_iter().rev().find(|from| i >= *from);
             from.map_or([0.0; 2], |from| led(i, from))
         };
-        let ends = [at([20, 600]), at([300, 630])];
-        let mut samples = ends.map(|at| sample(i, at.map(|x| x + noise)));
+        let mut samples = [at([20, 600]), at([300, 630])].map(|at| noisy(i, at));
         samples[1].position_m[0] += 3e-6;
         if i == 500 {
             samples[1].position_m[1] = f32::NAN;
@@ -135,9 +141,9 @@ fn beyond_its_turn_only_backward_whirl_is_acted_on() {
     let engaged_at_turn = |turn_rad: f32| {
         let mut rotor = new_rotor(&config);
         let commands = (0..200).map(|i| {
-            let at = led(i, 20).map(|x| x + quiet(i)[0]);
-            let spin_rad_s = turn_rad / late_s / 0.8;
-            rotor.tick(&[sample_with(i, at, |s| s.spin_rad_s = spin_rad_s); 2])
+            let mut now = noisy(i, led(i, 20));
+            now.spin_rad_s = turn_rad / late_s / 0.8;
+            rotor.tick(&[now; 2])
         });
         let commands: Vec<RotorCommand> = commands.collect();
         engaged_at(&commands, 0).unwrap()
@@ -201,10 +207,8 @@ fn an_engagement_without_a_touch_holds_nothing_up() {
             Some(i) => 0.9 * (1.0 - (i - 36) as f32 / 60.0).max(0.0),
             None => 0.0,
         };
-        let noise = 1e-6 * (i % 3) as f32;
-        let first = [1.95e-4 * near + noise, noise];
-        let second = led(i, 600).map(|x| x + noise);
-        let command = rotor.tick(&[sample(i, first), sample(i, second)]);
+        let samples = [[1.95e-4 * near, 0.0], led(i, 600)].map(|at| noisy(i, at));
+        let command = rotor.tick(&samples);
         engaged |= command.planes[0].events.contains(Events::ENGAGED);
         told = command.other_engaged[1];
         if i == 590 {
@@ -273,10 +277,8 @@ fn free_nutation_is_no_approach() {
         let mut rotor = new_rotor(&free());
         let mut engaged = [false; 2];
         nutating(spin, sense, |samples| {
-            let commands = rotor.tick(samples).planes;
-            for (engaged, command) in engaged.iter_mut().zip(commands) {
-                *engaged |= command.mode != Mode::Levitated;
-            }
+            let planes = rotor.tick(samples).planes;
+            engaged = [0, 1].map(|end| engaged[end] || planes[end].mode != Mode::Levitated);
         });
         engaged
     };
@@ -289,7 +291,7 @@ fn free_nutation_is_no_approach() {
     // A plane alone takes the first for an approach, too.
     let config = free();
     let shaft = shaft(&config);
-    let mut alone = Supervisor::<RECORD>::new(&shaft.plane(0, &config)).unwrap();
+    let mut alone = alone(&shaft, 0, &config);
     let mut engaged = false;
     nutating(3500.0, 1.0, |[sample, _]| {
         engaged |= alone.tick(sample).mode != Mode::Levitated;
@@ -303,8 +305,7 @@ fn without_spin_there_is_no_nutation() {
     let config = free();
     let shaft = shaft(&config);
     let mut rotor = new_rotor(&config);
-    let mut alone =
-        [0, 1].map(|end| Supervisor::<RECORD>::new(&shaft.plane(end, &config)).unwrap());
+    let mut alone = [0, 1].map(|end| alone(&shaft, end, &config));
     nutating(3500.0, 1.0, |samples| {
         let mut blind = *samples;
         blind.iter_mut().for_each(|s| s.status = Status::BEARING_ON);
@@ -336,7 +337,7 @@ fn a_push_by_the_other_magnet_is_known_before_it_is_seen() {
     };
     let configs = [with(500.0), with(2000.0)];
     let mut rotor = RotorSupervisor::<RECORD>::new(&shaft, &configs).unwrap();
-    let mut alone = Supervisor::<RECORD>::new(&shaft.plane(0, &configs[0])).unwrap();
+    let mut alone = alone(&shaft, 0, &configs[0]);
     // Acceleration of each end per force at the second.
     let magnet_m = shaft.places[1].magnet_m;
     let per_kg = shaft.places.map(|place| {
@@ -363,9 +364,7 @@ fn a_push_by_the_other_magnet_is_known_before_it_is_seen() {
             speed_m_s[end] += gained;
         }
     }
-    let [Some(known), Some(seen)] = engaged else {
-        panic!("{engaged:?}");
-    };
+    let [known, seen] = engaged.map(Option::unwrap);
     assert!((pushed_at + 1..=pushed_at + 2).contains(&known), "{known}");
     assert!(seen > known + 5, "{known} {seen}");
 }
