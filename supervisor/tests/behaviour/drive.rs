@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use supervisor::{Command, Config, Events, Mode, Sample, Status, Supervisor};
 use test_support::rig::{
-    RADIUS_M, WHIRL_STEP, config, config_with, on_circle, sample, sample_with, ticks_of,
+    RADIUS_M, WHIRL_STEP, asking, config, config_with, on_circle, sample_with, ticks_of,
 };
 
 /// What a drive makes of a command \[N\].
@@ -46,17 +46,12 @@ impl Bench {
             ..now
         });
         self.line.push(command.force_n);
-        let wanted = makes(self.line.remove(0));
-        self.deliver(wanted);
-        command
-    }
-
-    /// A tick of the amplifier.
-    fn deliver(&mut self, wanted_n: [f32; 2]) {
+        let wanted_n = makes(self.line.remove(0));
         let left = (-50e-6 / self.lag_s).exp();
         for (delivered_n, to) in self.delivered_n.iter_mut().zip(wanted_n) {
             *delivered_n = to + (*delivered_n - to) * left;
         }
+        command
     }
 }
 
@@ -104,21 +99,18 @@ proptest! {
 #[test]
 fn a_slow_drive_is_left_alone() {
     for sample_period_s in [20e-6_f32, 50e-6, 100e-6] {
-        left_alone(&config_with(|c| c.sample_period_s = sample_period_s));
-    }
-}
-
-fn left_alone(with: &Config) {
-    let mut supervisor = Supervisor::<64>::new(with).unwrap();
-    let mut delivered_n = [0.0_f32; 2];
-    for i in 0..4000_u32 {
-        let full = if i / 400 % 2 == 0 { 900.0 } else { -900.0 };
-        let command = supervisor.tick(&in_the_middle(i, [full, 100.0], delivered_n));
-        assert!(!command.events.contains(Events::AXIS_LOST), "{i}");
-        for (delivered_n, to) in delivered_n.iter_mut().zip(command.force_n) {
-            // From one cap to the other in 4 ms, a dozen times slower than the lag alone.
-            let most = 5e5 * with.sample_period_s;
-            *delivered_n += (to - *delivered_n).clamp(-most, most);
+        let with = config_with(|c| c.sample_period_s = sample_period_s);
+        let mut supervisor = Supervisor::<64>::new(&with).unwrap();
+        let mut delivered_n = [0.0_f32; 2];
+        for i in 0..4000_u32 {
+            let full = if i / 400 % 2 == 0 { 900.0 } else { -900.0 };
+            let command = supervisor.tick(&in_the_middle(i, [full, 100.0], delivered_n));
+            assert!(!command.events.contains(Events::AXIS_LOST), "{i}");
+            for (delivered_n, to) in delivered_n.iter_mut().zip(command.force_n) {
+                // From one cap to the other in 4 ms, a dozen times slower than the lag alone.
+                let most = 5e5 * sample_period_s;
+                *delivered_n += (to - *delivered_n).clamp(-most, most);
+            }
         }
     }
 }
@@ -272,8 +264,11 @@ fn in_shadow_nothing_is_taken_from_the_levitation_controller() {
     for i in 0..600_u32 {
         let shadow = i < 590;
         let full = if i / 50 % 2 == 0 { 900.0 } else { -900.0 };
-        let mut now = sample(0, on_circle(RADIUS_M, WHIRL_STEP * i as f32));
-        now.levitation_n = [full, -300.0];
+        let mut now = asking(
+            0,
+            on_circle(RADIUS_M, WHIRL_STEP * i as f32),
+            [full, -300.0],
+        );
         now.status |= Status::APPLIED_VALID;
         now.status.set(Status::SHADOW, shadow);
         let command = bench.tick_of(now, |[x, y]| [-x, y]);
