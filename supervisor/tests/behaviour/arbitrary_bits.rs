@@ -24,7 +24,8 @@ trait Driven: Sized {
 
     /// `None` where the numbers do not hold this bearing.
     fn new(config: &Config) -> Option<Self>;
-    fn reconfigure(&mut self, config: &Config) -> bool;
+    /// `None` where it is refused.
+    fn reconfigure(&mut self, config: &Config) -> Option<()>;
     fn bounds(config: &Config) -> Bounds;
     fn tick(&mut self, sample: &CoreSample<Self::Number>) -> CoreCommand<Self::Number>;
     fn report(&self) -> Report;
@@ -37,12 +38,9 @@ impl<S: AnyBits> Driven for Core<S, 64> {
     fn new(config: &Config) -> Option<Self> {
         Some(Core::new(&Prepared::new(config).ok()?))
     }
-    fn reconfigure(&mut self, config: &Config) -> bool {
-        let prepared = Prepared::new(config);
-        if let Ok(prepared) = &prepared {
-            Core::reconfigure(self, prepared);
-        }
-        prepared.is_ok()
+    fn reconfigure(&mut self, config: &Config) -> Option<()> {
+        Core::reconfigure(self, &Prepared::new(config).ok()?);
+        Some(())
     }
     fn bounds(config: &Config) -> Bounds {
         Bounds::new::<S>(config)
@@ -85,9 +83,9 @@ impl Driven for InNewtons {
             scaling: config.scaling(),
         })
     }
-    fn reconfigure(&mut self, config: &Config) -> bool {
+    fn reconfigure(&mut self, config: &Config) -> Option<()> {
         self.scaling = config.scaling();
-        self.supervisor.reconfigure(config).is_ok()
+        self.supervisor.reconfigure(config).ok()
     }
     fn bounds(config: &Config) -> Bounds {
         Bounds::in_newtons(config)
@@ -125,7 +123,7 @@ fn drive<D: Driven>(ticks: u64) -> [u64; 8] {
         for i in 0..TICKS_PER_CONFIG {
             if chance.once_in(CONFIG_EVERY) {
                 let other = any_config(&mut chance);
-                if driven.reconfigure(&other) {
+                if driven.reconfigure(&other).is_some() {
                     bounds = bounds.reconfigured(D::bounds(&other));
                     config = other;
                     changes += 1;

@@ -179,13 +179,12 @@ fn positions_are_carried_to_the_plane_of_the_retainer_bearing() {
         let with = config_with(|c| (c.retainer_plane_ratio, c.sensor_step_m) = (ratio, step_m));
         let mut supervisor = Supervisor::<64>::new(&with).unwrap();
         // A record is frozen once the event is over.
-        let commands: Vec<Command> = (0..1000_u32)
-            .map(|i| {
-                let share = 1.0 - (i.saturating_sub(400) as f32 / 100.0).min(0.99);
-                let at = on_circle(share * RADIUS_M, WHIRL_STEP * i as f32);
-                supervisor.tick(&sample(i, at.map(|x| x / ratio)))
-            })
-            .collect();
+        let ticks = (0..1000_u32).map(|i| {
+            let share = 1.0 - (i.saturating_sub(400) as f32 / 100.0).min(0.99);
+            let at = on_circle(share * RADIUS_M, WHIRL_STEP * i as f32);
+            supervisor.tick(&sample(i, at.map(|x| x / ratio)))
+        });
+        let commands: Vec<Command> = ticks.collect();
         let record = supervisor.record().unwrap();
         let record: Vec<[u32; 2]> = record.entries().map(|e| e.position).collect();
         (commands, record)
