@@ -5,28 +5,13 @@
 use core::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 use supervisor::{Config, LEDGER_BYTES, PARAMETERS, Status};
-use supervisor_capi::archive::{
-    amb_archive_count, amb_archive_discard, amb_archive_init, amb_archive_section,
-    amb_archive_take, amb_archive_take_rotor,
-};
-use supervisor_capi::bearing::{amb_config_for_bearing, amb_config_for_rotor};
-use supervisor_capi::calls::{
-    amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm, amb_reconfigure,
-    amb_record_section, amb_report_now, amb_self_test, amb_tick,
-};
-use supervisor_capi::ledger::{
-    amb_ledger_landings_left, amb_ledger_new, amb_ledger_newer, amb_ledger_read,
-    amb_ledger_take_in, amb_ledger_take_in_plane, amb_ledger_write,
-};
-use supervisor_capi::rotor::{
-    amb_rotor_init, amb_rotor_next_event, amb_rotor_rearm, amb_rotor_reconfigure,
-    amb_rotor_record_section, amb_rotor_report_now, amb_rotor_self_test, amb_rotor_tick,
-};
-use supervisor_capi::structs::{
-    CBearing, CCommand, CEvent, CLedger, CParameter, CReport, CRotorCommand, CSample, CSection,
-    CShaft, CStamp,
-};
-use supervisor_capi::watch::{amb_watch_expired, amb_watch_force, amb_watch_init, amb_watch_renew};
+use supervisor_capi::archive::*;
+use supervisor_capi::bearing::*;
+use supervisor_capi::calls::*;
+use supervisor_capi::ledger::*;
+use supervisor_capi::rotor::*;
+use supervisor_capi::structs::*;
+use supervisor_capi::watch::*;
 use supervisor_capi::{ArchiveStorage, Code, RECORD, RotorStorage, Shelf, Storage, WatchStorage};
 
 /// Memory as C has it.
@@ -48,10 +33,8 @@ impl Archived {
     }
 
     fn pointers(&mut self, of: usize) -> (*mut ArchiveStorage, *mut Shelf) {
-        (
-            (&raw mut self.archives[of]).cast(),
-            (&raw mut self.places[of]).cast(),
-        )
+        let archive = (&raw mut self.archives[of]).cast();
+        (archive, (&raw mut self.places[of]).cast())
     }
 }
 
@@ -72,6 +55,34 @@ const VALUES: [f32; PARAMETERS.len()] = Config {
 }
 .values();
 
+const SHAFT: CShaft = CShaft {
+    mass_kg: 20.0,
+    transverse_inertia_kg_m2: 0.8,
+    polar_inertia_kg_m2: 0.5,
+    retainer_m: [-0.2, 0.22],
+    sensor_m: [-0.19, 0.21],
+    magnet_m: [-0.17, 0.19],
+};
+
+/// All but its number, of a rotor in the middle.
+fn in_the_middle() -> CSample {
+    CSample {
+        status: (Status::BEARING_ON | Status::SPIN_VALID | Status::LEVITATED_BEFORE).bits(),
+        ..CSample::default()
+    }
+}
+
+#[track_caller]
+fn ok(code: Code) {
+    assert_eq!(code, Code::OK);
+}
+
+/// Takes sections until there are no more.
+fn more_than_a_few(take: impl FnMut(u32) -> Code) {
+    let sections = (0..).map(take).take_while(|code| *code == Code::OK);
+    assert!(sections.count() > RECORD / 32);
+}
+
 /// Onto the wall, a while there, and back.
 fn way_m(tick: usize) -> f32 {
     let out = (tick as f32 * 5e-5).min(2e-4);
@@ -86,10 +97,7 @@ fn calls_touch_only_what_they_were_given() {
     let size = size_of::<Memory>();
     let plane: *mut Storage = (&raw mut *memory).cast();
     let mut command = CCommand::default();
-    let mut sample = CSample {
-        status: (Status::BEARING_ON | Status::SPIN_VALID | Status::LEVITATED_BEFORE).bits(),
-        ..CSample::default()
-    };
+    let mut sample = in_the_middle();
     let mut event = MaybeUninit::<CEvent>::uninit();
     let mut section = MaybeUninit::<CSection>::uninit();
     let stamp = CStamp::default();
@@ -99,16 +107,14 @@ fn calls_touch_only_what_they_were_given() {
     // SAFETY: every pointer is null, misaligned, or points to what its type says; the memory is zero, and
     // used through these calls alone.
     unsafe {
-        let not_made = amb_tick(plane, &raw const sample, &raw mut command);
-        assert_eq!(not_made, Code::ERROR_NOT_INITIALISED);
+        let code = amb_tick(plane, &raw const sample, &raw mut command);
+        assert_eq!(code, Code::ERROR_NOT_INITIALISED);
         let count = PARAMETERS.len();
-        assert_eq!(amb_init(plane, size, VALUES.as_ptr(), count), Code::OK);
+        ok(amb_init(plane, size, VALUES.as_ptr(), count));
         // Twice: the first one is replaced.
-        assert_eq!(amb_init(plane, size, VALUES.as_ptr(), count), Code::OK);
-        assert_eq!(
-            amb_init(null_mut(), size, null(), count),
-            Code::ERROR_SUPERVISOR_NULL
-        );
+        ok(amb_init(plane, size, VALUES.as_ptr(), count));
+        let code = amb_init(null_mut(), size, null(), count);
+        assert_eq!(code, Code::ERROR_SUPERVISOR_NULL);
         let take = |index, section: &mut MaybeUninit<CSection>| {
             let section = section.as_mut_ptr();
             amb_record_section(plane, index, &raw const stamp, section)
@@ -119,51 +125,45 @@ fn calls_touch_only_what_they_were_given() {
             sample.sequence += 1;
             sample.position_m[0] = way_m(ticks);
             ticks += 1;
-            let code = amb_tick(plane, &raw const sample, &raw mut command);
-            assert_eq!(code, Code::OK);
+            ok(amb_tick(plane, &raw const sample, &raw mut command));
             assert!(ticks < 10 * RECORD);
         }
-        let sections = (0..).take_while(|i| take(*i, &mut section) == Code::OK);
-        assert!(sections.count() > RECORD / 32);
-        assert_eq!(amb_next_event(plane, event.as_mut_ptr()), Code::OK);
-        assert_eq!(amb_report_now(plane, report.as_mut_ptr()), Code::OK);
+        more_than_a_few(|i| take(i, &mut section));
+        ok(amb_next_event(plane, event.as_mut_ptr()));
+        ok(amb_report_now(plane, report.as_mut_ptr()));
         assert_eq!(report.assume_init().landings, 1);
         let mut ledger = Box::new(CLedger::default());
         let ledger = &raw mut *ledger;
         let mut bytes = Box::new([0_u8; LEDGER_BYTES]);
         let bytes = bytes.as_mut_ptr();
-        assert_eq!(amb_ledger_new(7, 20.0, ledger), Code::OK);
-        assert_eq!(amb_ledger_take_in(ledger, plane), Code::OK);
+        ok(amb_ledger_new(7, 20.0, ledger));
+        ok(amb_ledger_take_in(ledger, plane));
         assert_eq!(amb_ledger_take_in(ledger, plane), Code::NOTHING);
-        assert_eq!(amb_ledger_write(ledger, bytes, LEDGER_BYTES), Code::OK);
-        assert_eq!(amb_ledger_read(bytes, LEDGER_BYTES, ledger), Code::OK);
-        let newer = amb_ledger_newer(bytes, bytes, LEDGER_BYTES, ledger);
-        assert_eq!(newer, Code::OK);
+        ok(amb_ledger_write(ledger, bytes, LEDGER_BYTES));
+        ok(amb_ledger_read(bytes, LEDGER_BYTES, ledger));
+        ok(amb_ledger_newer(bytes, bytes, LEDGER_BYTES, ledger));
         let mut left = 0;
-        let asked = amb_ledger_landings_left(ledger, 1.0, &raw mut left);
-        assert_eq!(asked, Code::OK);
+        ok(amb_ledger_landings_left(ledger, 1.0, &raw mut left));
         assert!(((*ledger).landings, (*ledger).bearing) == (1, 7) && left < 20);
         let mut kept = Archived::new();
         let (archive, places) = kept.pointers(0);
-        assert_eq!(amb_archive_init(archive, places, 1), Code::OK);
-        assert_eq!(amb_archive_take(archive, plane), Code::OK);
+        ok(amb_archive_init(archive, places, 1));
+        ok(amb_archive_take(archive, plane));
         assert_eq!(amb_archive_take(archive, plane), Code::NOTHING);
         let mut count = 0;
-        assert_eq!(amb_archive_count(archive, &raw mut count), Code::OK);
+        ok(amb_archive_count(archive, &raw mut count));
         assert_eq!(count, 1);
-        let mut take =
-            |index| amb_archive_section(archive, index, &raw const stamp, section.as_mut_ptr());
-        let sections = (0..).take_while(|i| take(*i) == Code::OK);
-        assert!(sections.count() > RECORD / 32);
-        assert_eq!(amb_archive_discard(archive), Code::OK);
-        assert_eq!(amb_rearm(plane), Code::OK);
-        let found = amb_parameter_index(c"sensor_step_m".as_ptr(), &raw mut index);
-        assert_eq!(found, Code::OK);
-        assert_eq!(amb_parameter_at(index, row.as_mut_ptr()), Code::OK);
+        let section = section.as_mut_ptr();
+        more_than_a_few(|i| amb_archive_section(archive, i, &raw const stamp, section));
+        ok(amb_archive_discard(archive));
+        ok(amb_rearm(plane));
+        let code = amb_parameter_index(c"sensor_step_m".as_ptr(), &raw mut index);
+        ok(code);
+        ok(amb_parameter_at(index, row.as_mut_ptr()));
         assert_eq!(row.assume_init().low, 1e-9);
         let count = PARAMETERS.len();
-        assert_eq!(amb_reconfigure(plane, VALUES.as_ptr(), count), Code::OK);
-        assert_eq!(amb_self_test(plane), Code::OK);
+        ok(amb_reconfigure(plane, VALUES.as_ptr(), count));
+        ok(amb_self_test(plane));
         let off = (&raw mut command).cast::<u8>().wrapping_add(1).cast();
         let code = amb_tick(plane, &raw const sample, off);
         assert_eq!(code, Code::ERROR_COMMAND_MISALIGNED);
@@ -179,20 +179,8 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
     let values = Box::new([VALUES; 2]);
     let values: *const f32 = (&raw const *values).cast();
     let count = 2 * PARAMETERS.len();
-    let shaft = CShaft {
-        mass_kg: 20.0,
-        transverse_inertia_kg_m2: 0.8,
-        polar_inertia_kg_m2: 0.5,
-        retainer_m: [-0.2, 0.22],
-        sensor_m: [-0.19, 0.21],
-        magnet_m: [-0.17, 0.19],
-    };
-    let mut samples = Box::new(
-        [CSample {
-            status: (Status::BEARING_ON | Status::SPIN_VALID | Status::LEVITATED_BEFORE).bits(),
-            ..CSample::default()
-        }; 2],
-    );
+    let shaft = SHAFT;
+    let mut samples = Box::new([in_the_middle(); 2]);
     let mut command = CRotorCommand::default();
     let mut event = MaybeUninit::<CEvent>::uninit();
     let mut section = MaybeUninit::<CSection>::uninit();
@@ -203,10 +191,9 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
         let tick = |samples: &[CSample; 2], command: &mut CRotorCommand| {
             amb_rotor_tick(rotor, (&raw const *samples).cast(), &raw mut *command)
         };
-        let not_made = tick(&samples, &mut command);
-        assert_eq!(not_made, Code::ERROR_ROTOR_NOT_INITIALISED);
-        let code = amb_rotor_init(rotor, size, &raw const shaft, values, count);
-        assert_eq!(code, Code::OK);
+        let code = tick(&samples, &mut command);
+        assert_eq!(code, Code::ERROR_ROTOR_NOT_INITIALISED);
+        ok(amb_rotor_init(rotor, size, &raw const shaft, values, count));
         let mut take = |plane, index| {
             let section = section.as_mut_ptr();
             amb_rotor_record_section(rotor, plane, index, &raw const stamp, section)
@@ -218,44 +205,35 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
                 sample.position_m[0] = way_m(ticks);
             }
             ticks += 1;
-            assert_eq!(tick(&samples, &mut command), Code::OK);
+            ok(tick(&samples, &mut command));
             assert!(ticks < 10 * RECORD);
         }
         for plane in [0, 1] {
-            let sections = (0..).take_while(|i| take(plane, *i) == Code::OK);
-            assert!(sections.count() > RECORD / 32);
-            assert_eq!(
-                amb_rotor_next_event(rotor, plane, event.as_mut_ptr()),
-                Code::OK
-            );
-            assert_eq!(
-                amb_rotor_report_now(rotor, plane, report.as_mut_ptr()),
-                Code::OK
-            );
+            more_than_a_few(|i| take(plane, i));
+            ok(amb_rotor_next_event(rotor, plane, event.as_mut_ptr()));
+            ok(amb_rotor_report_now(rotor, plane, report.as_mut_ptr()));
             assert_eq!(report.assume_init().landings, 1);
             let mut ledger = Box::new(CLedger::default());
             let ledger = &raw mut *ledger;
-            assert_eq!(amb_ledger_new(plane, 20.0, ledger), Code::OK);
+            ok(amb_ledger_new(plane, 20.0, ledger));
             let code = amb_ledger_take_in_plane(ledger, rotor, plane);
             assert_eq!((code, (*ledger).landings), (Code::OK, 1));
         }
         let mut kept = Archived::new();
         let ((first, places), (second, others)) = (kept.pointers(0), kept.pointers(1));
-        assert_eq!(amb_archive_init(first, places, 1), Code::OK);
-        assert_eq!(amb_archive_init(second, others, 1), Code::OK);
-        let twice = amb_archive_take_rotor(first, first, rotor);
-        assert_eq!(twice, Code::ERROR_ARCHIVE_BUSY);
-        let took = amb_archive_take_rotor(first, second, rotor);
-        assert_eq!(took, Code::OK);
+        ok(amb_archive_init(first, places, 1));
+        ok(amb_archive_init(second, others, 1));
+        let code = amb_archive_take_rotor(first, first, rotor);
+        assert_eq!(code, Code::ERROR_ARCHIVE_BUSY);
+        ok(amb_archive_take_rotor(first, second, rotor));
         for archive in [first, second] {
             let stamp = &raw const stamp;
-            let code = amb_archive_section(archive, 0, stamp, section.as_mut_ptr());
-            assert_eq!(code, Code::OK);
+            ok(amb_archive_section(archive, 0, stamp, section.as_mut_ptr()));
         }
-        assert_eq!(amb_rotor_rearm(rotor), Code::OK);
-        assert_eq!(amb_rotor_self_test(rotor), Code::OK);
+        ok(amb_rotor_rearm(rotor));
+        ok(amb_rotor_self_test(rotor));
         let code = amb_rotor_reconfigure(rotor, &raw const shaft, values, count);
-        assert_eq!(code, Code::OK);
+        ok(code);
     }
 }
 
@@ -269,20 +247,20 @@ fn a_watch_touches_only_what_it_was_given() {
     // SAFETY: every pointer is null or points to what its type says; the memory is zero, and used through
     // these calls alone.
     unsafe {
-        let not_made = amb_watch_force(watch, force.as_mut_ptr());
-        assert_eq!(not_made, Code::ERROR_WATCH_NOT_INITIALISED);
+        let code = amb_watch_force(watch, force.as_mut_ptr());
+        assert_eq!(code, Code::ERROR_WATCH_NOT_INITIALISED);
         assert_eq!(*force, [0.0; 2]);
-        assert_eq!(amb_watch_init(watch, 1), Code::OK);
+        ok(amb_watch_init(watch, 1));
         // Twice: the first one is replaced.
-        assert_eq!(amb_watch_init(watch, 1), Code::OK);
+        ok(amb_watch_init(watch, 1));
         assert_eq!(amb_watch_init(null_mut(), 1), Code::ERROR_WATCH_NULL);
-        assert_eq!(amb_watch_renew(watch, [2.0, 3.0].as_ptr()), Code::OK);
+        ok(amb_watch_renew(watch, [2.0, 3.0].as_ptr()));
         assert_eq!(amb_watch_renew(watch, null()), Code::ERROR_FORCE_NULL);
-        assert_eq!(amb_watch_force(watch, force.as_mut_ptr()), Code::OK);
+        ok(amb_watch_force(watch, force.as_mut_ptr()));
         assert_eq!(*force, [2.0, 3.0]);
-        assert_eq!(amb_watch_force(watch, force.as_mut_ptr()), Code::OK);
+        ok(amb_watch_force(watch, force.as_mut_ptr()));
         assert_eq!(*force, [0.0; 2]);
-        assert_eq!(amb_watch_expired(watch, &raw mut expired), Code::OK);
+        ok(amb_watch_expired(watch, &raw mut expired));
         assert_eq!(expired, 1);
     }
 }
@@ -298,27 +276,18 @@ fn configurations_go_only_where_their_values_are() {
         contact_stiffness_n_m: 2e8,
         ..CBearing::default()
     };
-    let shaft = CShaft {
-        mass_kg: 20.0,
-        transverse_inertia_kg_m2: 0.8,
-        polar_inertia_kg_m2: 0.5,
-        retainer_m: [-0.2, 0.22],
-        sensor_m: [-0.19, 0.21],
-        magnet_m: [-0.17, 0.19],
-    };
+    let shaft = SHAFT;
     let bearings = Box::new([bearing; 2]);
     let first: *const CBearing = (&raw const *bearings).cast();
     let mut one = Box::new([0.0_f32; PARAMETERS.len()]);
     let mut both = Box::new([0.0_f32; 2 * PARAMETERS.len()]);
-    let (to_one, to_both) = (
-        (&raw mut *one).cast::<f32>(),
-        (&raw mut *both).cast::<f32>(),
-    );
+    let to_one: *mut f32 = (&raw mut *one).cast();
+    let to_both: *mut f32 = (&raw mut *both).cast();
     // SAFETY: every pointer is null or points to what its type says, and the values to as many floats as is declared.
     unsafe {
-        assert_eq!(amb_config_for_bearing(first, to_one, one.len()), Code::OK);
+        ok(amb_config_for_bearing(first, to_one, one.len()));
         let code = amb_config_for_rotor(&raw const shaft, first, to_both, both.len());
-        assert_eq!(code, Code::OK);
+        ok(code);
         let code = amb_config_for_rotor(&raw const shaft, first, to_both, one.len());
         assert_eq!(code, Code::ERROR_VALUES_COUNT);
         let code = amb_config_for_bearing(null(), to_one, one.len());

@@ -2,10 +2,10 @@
 //! finite, within every limit, in every mode and in every number.
 
 use supervisor::{
-    Command, Config, Core, CoreCommand, CoreSample, Events, Mode, PlanePositions, Prepared, Q,
-    Report, RotorSupervisor, Sample, Scaling, Shaft, Status, Supervisor,
+    Config, Core, CoreCommand, CoreSample, Events, Mode, PlanePositions, Prepared, Q, Report,
+    RotorSupervisor, Sample, Scaling, Shaft, Status, Supervisor,
 };
-use test_support::bounds::Bounds;
+use test_support::bounds::{Bounds, per_unit};
 use test_support::rig::config;
 use test_support::storm::{AnyBits, Chance, Storm, any_config};
 
@@ -24,7 +24,8 @@ trait Driven: Sized {
 
     /// `None` where the numbers do not hold this bearing.
     fn new(config: &Config) -> Option<Self>;
-    fn reconfigure(&mut self, config: &Config) -> bool;
+    /// `None` where it is refused.
+    fn reconfigure(&mut self, config: &Config) -> Option<()>;
     fn bounds(config: &Config) -> Bounds;
     fn tick(&mut self, sample: &CoreSample<Self::Number>) -> CoreCommand<Self::Number>;
     fn report(&self) -> Report;
@@ -37,12 +38,9 @@ impl<S: AnyBits> Driven for Core<S, 64> {
     fn new(config: &Config) -> Option<Self> {
         Some(Core::new(&Prepared::new(config).ok()?))
     }
-    fn reconfigure(&mut self, config: &Config) -> bool {
-        let prepared = Prepared::new(config);
-        if let Ok(prepared) = &prepared {
-            Core::reconfigure(self, prepared);
-        }
-        prepared.is_ok()
+    fn reconfigure(&mut self, config: &Config) -> Option<()> {
+        Core::reconfigure(self, &Prepared::new(config).ok()?);
+        Some(())
     }
     fn bounds(config: &Config) -> Bounds {
         Bounds::new::<S>(config)
@@ -76,18 +74,6 @@ fn in_si(scaling: &Scaling, sample: &CoreSample<f32>) -> Sample {
     }
 }
 
-fn per_unit(scaling: &Scaling, command: &Command) -> CoreCommand<f32> {
-    CoreCommand {
-        force: command.force_n.map(|x| x / scaling.force_n),
-        own: command.own_n.map(|x| x / scaling.force_n),
-        mode: command.mode,
-        limits: command.limits,
-        events: command.events,
-        integrator: command.integrator,
-        severity: command.severity,
-    }
-}
-
 impl Driven for InNewtons {
     type Number = f32;
 
@@ -97,9 +83,9 @@ impl Driven for InNewtons {
             scaling: config.scaling(),
         })
     }
-    fn reconfigure(&mut self, config: &Config) -> bool {
+    fn reconfigure(&mut self, config: &Config) -> Option<()> {
         self.scaling = config.scaling();
-        self.supervisor.reconfigure(config).is_ok()
+        self.supervisor.reconfigure(config).ok()
     }
     fn bounds(config: &Config) -> Bounds {
         Bounds::in_newtons(config)
@@ -108,10 +94,8 @@ impl Driven for InNewtons {
         let command = self.supervisor.tick(&in_si(&self.scaling, sample));
         let stimulus_n = self.supervisor.stimulus_n();
         let most_n = 0.051 * self.scaling.force_n;
-        assert!(
-            stimulus_n.iter().all(|n| n.abs() <= most_n),
-            "{stimulus_n:?}"
-        );
+        let small = stimulus_n.iter().all(|n| n.abs() <= most_n);
+        assert!(small, "{stimulus_n:?}");
         per_unit(&self.scaling, &command)
     }
     fn report(&self) -> Report {
@@ -139,7 +123,7 @@ fn drive<D: Driven>(ticks: u64) -> [u64; 8] {
         for i in 0..TICKS_PER_CONFIG {
             if chance.once_in(CONFIG_EVERY) {
                 let other = any_config(&mut chance);
-                if driven.reconfigure(&other) {
+                if driven.reconfigure(&other).is_some() {
                     bounds = bounds.reconfigured(D::bounds(&other));
                     config = other;
                     changes += 1;
@@ -165,10 +149,8 @@ fn drive<D: Driven>(ticks: u64) -> [u64; 8] {
 fn check(report: &Report, config: &Config, last_place: f64) {
     assert!(report.severity_index.is_finite(), "{config:?}: {report:?}");
     let cap_n = f64::from(config.force_max_n) * (1.0 + last_place);
-    assert!(
-        (0.0..=cap_n).contains(&f64::from(report.force_cap_n)),
-        "{config:?}: {report:?}"
-    );
+    let cap_holds = (0.0..=cap_n).contains(&f64::from(report.force_cap_n));
+    assert!(cap_holds, "{config:?}: {report:?}");
     // Of a continuous force so small fixed point keeps no square.
     if config.continuous_force_n > 1e-3 * config.force_max_n {
         assert!(report.thermal_state.is_finite(), "{config:?}: {report:?}");
@@ -178,11 +160,9 @@ fn check(report: &Report, config: &Config, last_place: f64) {
 /// Each mode is gone through for at least a two hundredth of the time.
 fn keeps_every_limit<D: Driven>(ticks: u64) {
     let modes = drive::<D>(ticks);
-    assert!(modes.iter().all(|count| *count > ticks / 200), "{modes:?}");
-    assert!(
-        modes[Mode::BackwardWhirl as usize] > ticks / 20,
-        "{modes:?}"
-    );
+    let whirls = modes[Mode::BackwardWhirl as usize] > ticks / 20;
+    let each = modes.iter().all(|count| *count > ticks / 200);
+    assert!(whirls && each, "{modes:?}");
 }
 
 /// Requirements: SR-01, SR-02, SR-03
@@ -285,12 +265,8 @@ fn mirrored_samples_give_mirrored_commands() {
                 ..here
             };
             let (a, b) = (left.tick(&here), right.tick(&there));
-            assert_eq!(a.mode, b.mode, "tick {i} of seed {seed}");
-            assert_eq!(
-                [-a.force[0], a.force[1]],
-                b.force,
-                "tick {i} of seed {seed}"
-            );
+            let mirrored = (a.mode, [-a.force[0], a.force[1]]);
+            assert_eq!(mirrored, (b.mode, b.force), "tick {i} of {seed}");
         }
     }
 }

@@ -1,12 +1,11 @@
 //! Records of several events in memory of the background's.
 
 use supervisor::{
-    Archive, ArchiveIn, ArchivePlace, Core, Prepared, Q, RotorArchive, RotorSupervisor, Scalar,
-    Supervisor,
+    Archive, ArchiveIn, ArchivePlace, Core, Prepared, Q, RotorArchive, Scalar, Supervisor,
 };
 use test_support::in_numbers;
 use test_support::records::{head, written};
-use test_support::rig::{LANDING_TICKS as LANDING, config, landing, sample, shaft};
+use test_support::rig::{LANDING_TICKS as LANDING, config, landing, new_rotor, quiet, sample};
 
 const RECORD: usize = 64;
 
@@ -80,7 +79,7 @@ fn the_oldest_goes_first_and_is_counted() {
 /// Requirement: SR-40
 #[test]
 fn of_a_rotor_both_planes_are_kept() {
-    let mut rotor = RotorSupervisor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = new_rotor(&config());
     let (mut other, mut third) = (rotor.clone(), rotor.clone());
     let (mut ticker, mut reader) = rotor.split();
     let ((mut also, mut reads), (mut too, mut reads_none)) = (other.split(), third.split());
@@ -91,7 +90,7 @@ fn of_a_rotor_both_planes_are_kept() {
     let mut none = [ArchiveIn::<RECORD>::new(&mut []), ArchiveIn::new(&mut [])];
     let mut at_once = Vec::new();
     for i in 0..3 * LANDING {
-        let samples = [sample(i, landing(i)), sample(i, [1e-6 * (i % 3) as f32; 2])];
+        let samples = [sample(i, landing(i)), sample(i, quiet(i))];
         let command = ticker.tick(&samples);
         assert_eq!([also.tick(&samples), too.tick(&samples)], [command; 2]);
         let both = [0, 1].map(|end| reader.record(end).map(|record| written(&record)));

@@ -1,8 +1,12 @@
 //! What crosses the supervisor's border besides positions: caps, slew limit, applied force, planes.
 
 use proptest::prelude::*;
-use supervisor::{Command, Config, Limits, Mode, Sample, Status, Supervisor};
-use test_support::rig::{RADIUS_M, WHIRL_STEP, check, config, length, on_circle, sample, whirl};
+use supervisor::{Command, Config, Limits, Mode, Status, Supervisor};
+use test_support::bounds::{Bounds, per_unit};
+use test_support::rig::{
+    RADIUS_M, WHIRL_STEP, asking, config, config_with, length, new_supervisor, on_circle, sample,
+    sample_with, whirl,
+};
 use test_support::storm::Chance;
 
 /// A magnet that binds in every way: box inside the disc, slow, and soon warm.
@@ -38,7 +42,7 @@ proptest! {
             at_m = [0, 1].map(|k| at_m[k] + 0.01 * (2e-5 * to[k] - at_m[k]));
             slow_n = [0, 1].map(|k| (slow_n[k] + 90.0 * shares[k]).clamp(-200.0, 200.0));
             for (supervisor, levitation_n) in [(&mut free, shares.map(|x| 700.0 * x)), (&mut slow, slow_n)] {
-                let command = supervisor.tick(&Sample { levitation_n, ..sample(i as u32, at_m) });
+                let command = supervisor.tick(&asking(i as u32, at_m, levitation_n));
                 prop_assert_eq!(command.mode, Mode::Levitated);
                 prop_assert_eq!(command.force_n.map(f32::to_bits), levitation_n.map(f32::to_bits));
                 prop_assert_eq!(command.limits, Limits::empty());
@@ -53,10 +57,11 @@ proptest! {
 fn limits_hold_and_are_named_through_a_whirl() {
     let with = bound();
     let mut supervisor = Supervisor::<64>::new(&with).unwrap();
-    let mut last_n = [0.0; 2];
+    let mut bounds = Bounds::in_newtons(&with);
     let mut seen = Limits::empty();
     for command in whirl(&mut supervisor, 0..2000, Status::empty()) {
-        last_n = check(&command, last_n, Status::empty(), &with).unwrap();
+        let checked = bounds.check(&per_unit(&with.scaling(), &command), Status::empty());
+        checked.unwrap();
         seen |= command.limits;
     }
     let expected = Limits::AXIS_CAP | Limits::SLEW | Limits::DERATED | Limits::FORCE_CAP;
@@ -68,10 +73,7 @@ fn limits_hold_and_are_named_through_a_whirl() {
 #[test]
 fn a_box_does_not_turn_the_braking_force() {
     let run = |axis_force_max_n: f32| {
-        let with = Config {
-            axis_force_max_n,
-            ..config()
-        };
+        let with = config_with(|c| c.axis_force_max_n = axis_force_max_n);
         let mut supervisor = Supervisor::new(&with).unwrap();
         whirl(&mut supervisor, 0..400, Status::empty()).split_off(200)
     };
@@ -80,10 +82,8 @@ fn a_box_does_not_turn_the_braking_force() {
         let sine = (a[0] * b[1] - a[1] * b[0]) / (length(free.force_n) * length(boxed.force_n));
         assert!(sine.abs() < 0.01, "{free:?} {boxed:?}");
         let largest = b[0].abs().max(b[1].abs());
-        assert!(
-            largest > 749.0 || length(boxed.force_n) > 999.0,
-            "{boxed:?}"
-        );
+        let used = largest > 749.0 || length(boxed.force_n) > 999.0;
+        assert!(used, "{boxed:?}");
     }
 }
 
@@ -113,13 +113,11 @@ fn the_applied_force_replaces_a_wrong_model() {
         let (mut force, mut register) = ([0.0_f64; 2], [0.0_f32; 2]);
         let (mut sum, mut count) = (0.0, 0.0);
         for i in 0..60_u32 {
-            let mut s = sample(i, p.map(|x| x as f32));
-            s.applied_n = force.map(|f| f as f32);
-            s.levitation_n = [3500.0, 0.0];
-            if measured {
-                s.status |= Status::APPLIED_VALID;
-            }
-            let command = supervisor.tick(&s);
+            let command = supervisor.tick(&sample_with(i, p.map(|x| x as f32), |s| {
+                s.applied_n = force.map(|f| f as f32);
+                s.levitation_n = [3500.0, 0.0];
+                s.status.set(Status::APPLIED_VALID, measured);
+            }));
             // Backward about the centre.
             let spin = (p[1] * v[0] - p[0] * v[1]) / 2e-4;
             if command.severity > 0.0 {
@@ -145,10 +143,8 @@ fn the_applied_force_replaces_a_wrong_model() {
     }
     for lag_s in [2e-5, 5e-4] {
         let (measured, modelled) = (error(lag_s, true), error(lag_s, false));
-        assert!(
-            measured < 2e-3 && modelled > 5.0 * measured,
-            "{measured} {modelled}"
-        );
+        let follows = measured < 2e-3 && modelled > 5.0 * measured;
+        assert!(follows, "{measured} {modelled}");
     }
 }
 
@@ -157,23 +153,18 @@ fn the_applied_force_replaces_a_wrong_model() {
 #[test]
 fn an_implausible_applied_force_is_not_believed() {
     let run = |status: Status, applied_n: [f32; 2]| {
-        let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-        (0..300_u32)
-            .map(|i| {
-                let mut s = sample(i, on_circle(RADIUS_M, WHIRL_STEP * i as f32));
-                s.status |= status;
-                s.applied_n = applied_n;
-                supervisor.tick(&s).force_n
-            })
-            .collect::<Vec<_>>()
+        let mut supervisor = new_supervisor();
+        let commands = (0..300_u32).map(|i| {
+            let at = on_circle(RADIUS_M, WHIRL_STEP * i as f32);
+            supervisor.tick(&sample_with(i, at, |s| {
+                (s.status, s.applied_n) = (s.status | status, applied_n);
+            }))
+        });
+        commands.map(|c| c.force_n).collect::<Vec<_>>()
     };
     let model = run(Status::empty(), [500.0, 0.0]);
-    for implausible in [
-        [f32::NAN, 0.0],
-        [0.0, f32::INFINITY],
-        [1500.0, 1500.0],
-        [f32::MAX, 0.0],
-    ] {
+    let infinite = [0.0, f32::INFINITY];
+    for implausible in [[f32::NAN, 0.0], infinite, [1500.0, 1500.0], [f32::MAX, 0.0]] {
         assert_eq!(run(Status::APPLIED_VALID, implausible), model);
     }
     assert_ne!(run(Status::APPLIED_VALID, [1500.0, 0.0]), model);
@@ -184,26 +175,18 @@ fn an_implausible_applied_force_is_not_believed() {
 #[test]
 fn positions_are_carried_to_the_plane_of_the_retainer_bearing() {
     let run = |ratio: f32| {
-        let with = Config {
-            retainer_plane_ratio: ratio,
-            sensor_step_m: 1e-6 / ratio,
-            ..config()
-        };
+        let step_m = 1e-6 / ratio;
+        let with = config_with(|c| (c.retainer_plane_ratio, c.sensor_step_m) = (ratio, step_m));
         let mut supervisor = Supervisor::<64>::new(&with).unwrap();
         // A record is frozen once the event is over.
-        let commands: Vec<Command> = (0..1000_u32)
-            .map(|i| {
-                let share = 1.0 - (i.saturating_sub(400) as f32 / 100.0).min(0.99);
-                let at = on_circle(share * RADIUS_M, WHIRL_STEP * i as f32);
-                supervisor.tick(&sample(i, at.map(|x| x / ratio)))
-            })
-            .collect();
-        let record: Vec<[u32; 2]> = supervisor
-            .record()
-            .unwrap()
-            .entries()
-            .map(|e| e.position)
-            .collect();
+        let ticks = (0..1000_u32).map(|i| {
+            let share = 1.0 - (i.saturating_sub(400) as f32 / 100.0).min(0.99);
+            let at = on_circle(share * RADIUS_M, WHIRL_STEP * i as f32);
+            supervisor.tick(&sample(i, at.map(|x| x / ratio)))
+        });
+        let commands: Vec<Command> = ticks.collect();
+        let record = supervisor.record().unwrap();
+        let record: Vec<[u32; 2]> = record.entries().map(|e| e.position).collect();
         (commands, record)
     };
     assert_eq!(run(1.0), run(2.0));
@@ -213,10 +196,7 @@ fn positions_are_carried_to_the_plane_of_the_retainer_bearing() {
 /// levitation command to the bit.
 fn idle(ticks: u32) -> u32 {
     // The pole that the host suggests for this noise.
-    let with = Config {
-        observer_pole_flight: 0.71,
-        ..config()
-    };
+    let with = config_with(|c| c.observer_pole_flight = 0.71);
     let mut supervisor = Supervisor::<64>::new(&with).unwrap();
     let mut chance = Chance::new(1);
     // Sum of twelve uniforms: normal enough, to six times its size of 1 µm.
@@ -230,15 +210,10 @@ fn idle(ticks: u32) -> u32 {
         // Ellipses of all shapes, forward and backward, at the highest speed at their ends.
         let shape = ((i % 90_000) as f32 * (std::f32::consts::TAU / 90_000.0)).cos();
         angle = (angle + rate * 50e-6) % std::f32::consts::TAU;
-        let position_m = [
-            8e-5 * angle.cos() + noise(),
-            shape * 8e-5 * angle.sin() + noise(),
-        ];
+        let (x, y) = (8e-5 * angle.cos(), shape * 8e-5 * angle.sin());
+        let position_m = [x + noise(), y + noise()];
         let levitation_n = [-4e5 * position_m[0], -4e5 * position_m[1]];
-        let command = supervisor.tick(&Sample {
-            levitation_n,
-            ..sample(i, position_m)
-        });
+        let command = supervisor.tick(&asking(i, position_m, levitation_n));
         let same = command.force_n.map(f32::to_bits) == levitation_n.map(f32::to_bits);
         changed += u32::from(!same || command.mode != Mode::Levitated || command.severity != 0.0);
     }
@@ -280,22 +255,15 @@ fn an_estimate_beyond_all_squares_comes_back() {
     let mut supervisor = Supervisor::<16>::new(&absurd).unwrap();
     // Two samples, four missed ticks, and on from there, to the wall and back.
     for (i, sequence) in [0, 1].into_iter().chain(6..200).enumerate() {
-        let share = if i % 40 < 20 {
-            0.49
-        } else {
-            0.9 + 0.01 * (i % 20) as f32
-        };
+        let share = [0.49, 0.9 + 0.01 * (i % 20) as f32][i / 20 % 2];
         let position_m = [1e-3 * share, 1e-3 * (0.31 - 1e-4 * i as f32)];
         let command = supervisor.tick(&sample(sequence, position_m));
-        assert!(
-            !command.limits.contains(Limits::NOT_FINITE),
-            "{i}: {command:?}"
-        );
-        assert!(command.severity.is_finite(), "{i}: {command:?}");
+        let named = command.limits.contains(Limits::NOT_FINITE);
+        assert!(!named && command.severity.is_finite(), "{i}: {command:?}");
     }
     let report = supervisor.report();
     assert!(report.contact_ticks > 20, "{report:?}");
-    let speeds = [report.impact_speed_max_m_s, report.backward_speed_max_m_s];
-    assert!(speeds.iter().all(|v| v.is_finite()), "{report:?}");
-    assert!(report.severity_index.is_finite(), "{report:?}");
+    let [impact, backward] = [report.impact_speed_max_m_s, report.backward_speed_max_m_s];
+    let numbers = [impact, backward, report.severity_index];
+    assert!(numbers.iter().all(|v| v.is_finite()), "{report:?}");
 }

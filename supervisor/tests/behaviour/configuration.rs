@@ -7,7 +7,7 @@ use supervisor::{
     RotorSupervisor, Sample, Shaft, ShaftError, Supervisor,
 };
 use test_support::bearing::bearing;
-use test_support::rig::{config, sample, shaft};
+use test_support::rig::{config, config_with, sample, shaft};
 
 const EXAMPLE: Bearing = bearing([50e-6, 10.0, -2e5, 2e-4, 1000.0, 1.6e-4, 0.15, 1e9, 1e-6]);
 
@@ -23,6 +23,12 @@ const NAMES: [&str; 9] = [
     "contact_stiffness_n_m",
     "sensor_step_m",
 ];
+
+fn with_value(config: &Config, index: usize, value: f32) -> Config {
+    let mut values = config.values();
+    values[index] = value;
+    Config::from_values(values)
+}
 
 fn range(name: &str) -> [f32; 2] {
     let row = PARAMETERS.iter().find(|p| p.name == name).unwrap();
@@ -232,31 +238,22 @@ fn config_errors_name_field_value_and_range() {
     for (i, p) in PARAMETERS.iter().enumerate() {
         let below = p.low - p.low.abs().max(1e-3);
         for wrong in [f32::NAN, f32::INFINITY, below, p.high * 2.0 + 1.0] {
-            let mut values = config().values();
-            values[i] = wrong;
-            let error = Config::from_values(values).validate().unwrap_err();
+            let error = with_value(&config(), i, wrong).validate().unwrap_err();
             assert_eq!(error.parameter().name, p.name);
             let text = error.to_string();
             // Both ends, as a person would write them.
             let (_, range) = text.split_once("expected ").unwrap();
             let words: Vec<&str> = range.split(' ').collect();
-            assert_eq!(
-                (words[0].parse(), words[2].parse()),
-                (Ok(p.low), Ok(p.high))
-            );
+            let ends = (words[0].parse(), words[2].parse());
+            assert_eq!(ends, (Ok(p.low), Ok(p.high)));
             assert!(words[0].len().max(words[2].len()) <= 6, "{text}");
             assert!(text.starts_with(p.name), "{text}");
         }
         for edge in [p.low, p.high] {
-            let mut values = config().values();
-            values[i] = edge;
             // In its range, and refused at most beside another.
-            let refused = Config::from_values(values).validate().err();
-            assert!(
-                refused.is_none_or(|error| error.contradiction.is_some()),
-                "{} at {edge}",
-                p.name
-            );
+            let refused = with_value(&config(), i, edge).validate().err();
+            let beside = refused.is_none_or(|error| error.contradiction.is_some());
+            assert!(beside, "{} at {edge}", p.name);
         }
     }
 }
@@ -266,13 +263,12 @@ fn config_errors_name_field_value_and_range() {
 #[test]
 fn a_slip_that_contradicts_another_value_names_both() {
     // Its poles are slow.
-    let noisy = Config {
-        force_slew_n_s: 5e5,
-        ..Config::for_bearing(&Bearing {
-            sensor_noise_m: 2.5e-6,
-            ..EXAMPLE
-        })
+    let noisy = Bearing {
+        sensor_noise_m: 2.5e-6,
+        ..EXAMPLE
     };
+    let mut noisy = Config::for_bearing(&noisy);
+    noisy.force_slew_n_s = 5e5;
     assert_eq!(noisy.validate(), Ok(()));
     let slips = [
         ("sample_period_s", 10.0, "force_max_n"),
@@ -284,26 +280,20 @@ fn a_slip_that_contradicts_another_value_names_both() {
         ("contact_band", 0.1, "sensor_step_m"),
     ];
     for (name, factor, other) in slips {
-        let mut values = noisy.values();
         let index = PARAMETERS.iter().position(|p| p.name == name).unwrap();
-        values[index] *= factor;
-        let error = Config::from_values(values).validate().unwrap_err();
+        let slip = with_value(&noisy, index, factor * noisy.values()[index]);
+        let error = slip.validate().unwrap_err();
         let text = error.to_string();
-        assert!(
-            text.contains(name) && text.contains(other),
-            "{name}: {text}"
-        );
+        let named = text.contains(name) && text.contains(other);
+        assert!(named, "{name}: {text}");
         let rule = error.rule().unwrap();
         let both = [rule.index, rule.other].map(|i| PARAMETERS[i].name);
         assert!(both.contains(&name) && both.contains(&other), "{text}");
         // What the text says is left is left.
-        values[rule.index] = error.contradiction.unwrap().limit;
-        let left = Config::from_values(values).validate().err();
-        assert!(
-            left.and_then(|e| e.contradiction)
-                .is_none_or(|c| c.rule > error.contradiction.unwrap().rule),
-            "{text}"
-        );
+        let broken = error.contradiction.unwrap();
+        let left = with_value(&slip, rule.index, broken.limit).validate().err();
+        let left = left.and_then(|e| e.contradiction);
+        assert!(left.is_none_or(|c| c.rule > broken.rule), "{text}");
     }
     assert_eq!(RULES.len(), 6);
 }
@@ -313,10 +303,7 @@ fn a_slip_that_contradicts_another_value_names_both() {
 #[test]
 fn a_refused_configuration_leaves_everything_as_it_is() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    let wrong = Config {
-        mass_kg: -1.0,
-        ..config()
-    };
+    let wrong = config_with(|c| c.mass_kg = -1.0);
     let error = supervisor.reconfigure(&wrong).unwrap_err();
     assert_eq!(error.parameter().name, "mass_kg");
     let command = supervisor.tick(&sample(0, [1e-6, 2e-6]));
@@ -333,30 +320,18 @@ fn a_shaft_that_no_body_has_is_refused() {
         assert_eq!(refused(Shaft { mass_kg, ..good }), ShaftError::Inertia);
     }
     for share in [-0.1, 2.1, f32::NAN] {
-        let polar_inertia_kg_m2 = share * good.transverse_inertia_kg_m2;
-        let wrong = Shaft {
-            polar_inertia_kg_m2,
-            ..good
-        };
+        let mut wrong = good;
+        wrong.polar_inertia_kg_m2 = share * good.transverse_inertia_kg_m2;
         assert_eq!(refused(wrong), ShaftError::Inertia);
     }
-    for places in [
-        [first, first],
-        [
-            first,
-            PlanePositions {
-                sensor_m: f32::NAN,
-                ..second
-            },
-        ],
-    ] {
+    let mut unknown = second;
+    unknown.sensor_m = f32::NAN;
+    for places in [[first, first], [first, unknown]] {
         assert_eq!(refused(Shaft { places, ..good }), ShaftError::Places);
     }
     // A magnet so far beyond the centre of percussion that it pushes the bearing the other way.
-    let beyond = PlanePositions {
-        magnet_m: -10.0 * second.magnet_m,
-        ..second
-    };
+    let mut beyond = second;
+    beyond.magnet_m *= -10.0;
     let places = [first, beyond];
     let error = refused(Shaft { places, ..good });
     assert!(matches!(error, ShaftError::Plane(1, _)), "{error}");
@@ -364,11 +339,8 @@ fn a_shaft_that_no_body_has_is_refused() {
     // What is refused changes nothing.
     let mut rotor = RotorSupervisor::<16>::new(&good, &[config(); 2]).unwrap();
     let before = rotor.clone();
-    assert!(
-        rotor
-            .reconfigure(&Shaft { places, ..good }, &[config(); 2])
-            .is_err()
-    );
+    let wrong = rotor.reconfigure(&Shaft { places, ..good }, &[config(); 2]);
+    assert!(wrong.is_err());
     assert_eq!(format!("{rotor:?}"), format!("{before:?}"));
     assert!(rotor.reconfigure(&good, &[config(); 2]).is_ok());
 }

@@ -1,8 +1,8 @@
 //! One coordinate is bad: the other is left to the levitation controller, as long as it makes sense itself.
 
-use supervisor::{Command, Config, Mode, RejectReason, Sample};
+use supervisor::{Command, Mode, RejectReason};
 use test_support::bench::{Bench, WHIRL_STEP};
-use test_support::rig::{RADIUS_M, config, on_circle, sample};
+use test_support::rig::{RADIUS_M, asking, config, config_with, on_circle};
 
 /// Where one coordinate is no number or out of range, the force along it goes to zero in the time of a hand-over, and along
 /// the other the levitation controller acts from the first tick on, bit for bit, whatever it makes of the bad one. Once the
@@ -10,11 +10,7 @@ use test_support::rig::{RADIUS_M, config, on_circle, sample};
 /// Requirement: SR-18
 #[test]
 fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
-    let with = Config {
-        fault_blend_s: 1e-2,
-        position_limit: 4.0,
-        ..config()
-    };
+    let with = config_with(|c| (c.fault_blend_s, c.position_limit) = (1e-2, 4.0));
     // The cap, in 40 ticks.
     let step_n = 25.0;
     for bad in [f32::NAN, f32::NEG_INFINITY, 8.1e-4] {
@@ -32,11 +28,7 @@ fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
                 if both {
                     position_m = [bad; 2];
                 }
-                bench.sequence += 1;
-                bench.supervisor.tick(&Sample {
-                    levitation_n: levitation(i),
-                    ..sample(bench.sequence, position_m)
-                })
+                bench.tick_asking(position_m, levitation(i))
             };
             let last = (1..10).map(|i| tick(i, false)).last().unwrap();
             assert_ne!(last.mode, Mode::SensorFault);
@@ -84,10 +76,7 @@ fn the_coordinate_that_makes_sense_is_left_to_levitation() {
                 1 => [x, y],
                 _ => [RADIUS_M, y],
             };
-            last = bench.supervisor.tick(&Sample {
-                levitation_n: [300.0, 300.0],
-                ..sample(bench.sequence, position_m)
-            });
+            last = (bench.supervisor).tick(&asking(bench.sequence, position_m, [300.0; 2]));
         }
         assert_eq!(last.mode, Mode::SensorFault);
         let good = if kind == 1 { 0.0 } else { 300.0 };
@@ -112,11 +101,8 @@ impl OneLeft {
 
     /// Before the first bad sample.
     fn new(bad: usize, reads_m: f32) -> Self {
-        let with = Config {
-            fault_blend_s: 1e-2,
-            fault_ticks: Self::FAULT as f32,
-            ..config()
-        };
+        let fault_ticks = Self::FAULT as f32;
+        let with = config_with(|c| (c.fault_blend_s, c.fault_ticks) = (1e-2, fault_ticks));
         let (bench, angle) = Bench::whirl(&with);
         Self {
             bench,
@@ -139,14 +125,24 @@ impl OneLeft {
     /// A tick after a step of the good coordinate; the command along it.
     fn tick(&mut self, step_m: f32) -> f32 {
         self.at_m += step_m;
-        self.bench.sequence += 1;
         let mut position_m = [self.at_m; 2];
         position_m[self.bad] = self.reads_m;
-        let command = self.bench.supervisor.tick(&Sample {
-            levitation_n: [Self::LEVITATION_N; 2],
-            ..sample(self.bench.sequence, position_m)
-        });
+        let command = self.bench.tick_asking(position_m, [Self::LEVITATION_N; 2]);
         command.force_n[1 - self.bad]
+    }
+
+    /// Whether all that the levitation controller asks for along the good coordinate goes through, in a tick after a step of it.
+    fn passes(&mut self, step_m: f32) -> bool {
+        let force_n = self.tick(step_m);
+        assert!(force_n <= Self::LEVITATION_N, "{force_n}");
+        force_n == Self::LEVITATION_N
+    }
+
+    /// As many samples that fit to each other as end a fault but for one: none of them does.
+    fn does_not_pass_yet(&mut self) {
+        for _ in 1..Self::FAULT {
+            assert!(!self.passes(1e-6));
+        }
     }
 
     /// Whether the levitation controller acts along the good coordinate in the first tick of the fault, after these steps of it.
@@ -178,15 +174,13 @@ fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
         let fresh = || OneLeft::in_fault(bad, reads_m);
         for jump_m in [1.01 * LONGEST_STEP_M, -1.01 * LONGEST_STEP_M, 5e-4] {
             let mut left = fresh();
-            for share in [0.99, -0.99] {
-                let force_n = left.tick(share * LONGEST_STEP_M);
-                assert_eq!(force_n, OneLeft::LEVITATION_N);
-            }
+            let can = [0.99, -0.99].map(|share| left.passes(share * LONGEST_STEP_M));
+            assert_eq!(can, [true; 2]);
             // Out and back.
             for _ in 0..3 {
                 let off_n = OneLeft::LEVITATION_N - left.tick(jump_m);
                 assert!((off_n - OneLeft::FADED_N).abs() < 0.1, "{off_n} N");
-                assert_eq!(left.tick(-jump_m), OneLeft::LEVITATION_N);
+                assert!(left.passes(-jump_m));
             }
             // Out, and from there on: until as many samples as end a fault fit to each other.
             for i in 1..2 + OneLeft::FAULT {
@@ -194,23 +188,19 @@ fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
                 let faded_n = OneLeft::LEVITATION_N - OneLeft::FADED_N * i as f32;
                 assert!((force_n - faded_n).abs() < 0.1, "{i}: {force_n} N");
             }
-            assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
-            assert!(left.tick(jump_m) < OneLeft::LEVITATION_N);
-            assert_eq!(left.tick(-jump_m), OneLeft::LEVITATION_N);
+            assert!(left.passes(1e-6));
+            assert!(!left.passes(jump_m));
+            assert!(left.passes(-jump_m));
         }
-        // Too far for one tick, but not for the two since the last one that fitted.
+        // Too far for one tick, but not for the two since the last one that fitted; as far as in three ticks, and the three
+        // before count for the next one; after a gap nothing can be compared. Ticks that are missed, and such steps.
         let mut left = fresh();
-        assert!(left.tick(1.9 * LONGEST_STEP_M) < OneLeft::LEVITATION_N);
-        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
-        // As far as in three ticks; and the three before count for the next one.
-        left.bench.sequence += 2;
-        assert_eq!(left.tick(2.9 * LONGEST_STEP_M), OneLeft::LEVITATION_N);
-        left.bench.sequence += 2;
-        assert!(left.tick(3.1 * LONGEST_STEP_M) < OneLeft::LEVITATION_N);
-        assert_eq!(left.tick(0.8 * LONGEST_STEP_M), OneLeft::LEVITATION_N);
-        // After a gap nothing can be compared.
-        left.bench.sequence += 20;
-        assert_eq!(left.tick(5e-4), OneLeft::LEVITATION_N);
+        let rows = [(0, 1.9), (0, 0.01), (2, 2.9), (2, 3.1), (0, 0.8), (20, 5.0)];
+        let passes = rows.map(|(missed, steps)| {
+            left.bench.sequence += missed;
+            left.passes(steps * LONGEST_STEP_M)
+        });
+        assert_eq!(passes, [false, true, true, false, true, true]);
     }
 }
 
@@ -219,28 +209,25 @@ fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
 #[test]
 fn a_jump_before_the_fault_counts() {
     const JUMP_M: f32 = 6e-4;
-    let at = |ticks: &[(usize, f32)]| {
+    let at = |jumps: &[(usize, f32)]| {
         let mut steps_m = [1e-6; OneLeft::FAULT];
-        for (tick, step_m) in ticks {
-            steps_m[tick - 1] = *step_m;
-        }
+        jumps
+            .iter()
+            .for_each(|(tick, step_m)| steps_m[tick - 1] = *step_m);
         steps_m
     };
     for (bad, reads_m) in BAD {
-        let left_after =
-            |ticks: &[(usize, f32)]| OneLeft::new(bad, reads_m).is_left_after(at(ticks));
+        let left_after = |jumps: &[_]| OneLeft::new(bad, reads_m).is_left_after(at(jumps));
         assert!(left_after(&[]));
         for first in 1..OneLeft::FAULT {
             assert!(!left_after(&[(first, JUMP_M)]), "at {first}");
-            assert!(
-                left_after(&[(first, JUMP_M), (first + 1, -JUMP_M)]),
-                "at {first}"
-            );
+            let back = left_after(&[(first, JUMP_M), (first + 1, -JUMP_M)]);
+            assert!(back, "at {first}");
         }
         // In the tick that makes the fault: for that tick.
         let mut left = OneLeft::new(bad, reads_m);
         assert!(!left.is_left_after(at(&[(OneLeft::FAULT, JUMP_M)])));
-        assert_eq!(left.tick(-JUMP_M), OneLeft::LEVITATION_N);
+        assert!(left.passes(-JUMP_M));
     }
 }
 
@@ -252,20 +239,16 @@ fn a_coordinate_that_fits_for_long_is_good_again() {
         for interrupted in 0..3 {
             let mut left = OneLeft::in_fault(bad, reads_m);
             left.bench.sequence -= 1;
-            assert!(left.tick(1e-6) < OneLeft::LEVITATION_N, "a repeated number");
-            for _ in 1..OneLeft::FAULT {
-                assert!(left.tick(1e-6) < OneLeft::LEVITATION_N);
-            }
+            assert!(!left.passes(1e-6), "a repeated number");
+            left.does_not_pass_yet();
             // The last one but for which it would be good.
             if interrupted > 0 {
                 left.bench.sequence -= u32::from(interrupted == 1);
                 let step_m = if interrupted == 2 { 5e-4 } else { 1e-6 };
-                assert!(left.tick(step_m) < OneLeft::LEVITATION_N);
-                for _ in 1..OneLeft::FAULT {
-                    assert!(left.tick(1e-6) < OneLeft::LEVITATION_N);
-                }
+                assert!(!left.passes(step_m));
+                left.does_not_pass_yet();
             }
-            assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N, "{interrupted}");
+            assert!(left.passes(1e-6), "{interrupted}");
         }
     }
 }
@@ -290,7 +273,7 @@ fn a_coordinate_that_is_stuck_is_not_good_again() {
         for _ in 1..OneLeft::FAULT {
             assert_eq!(left.tick(1e-6), 0.0);
         }
-        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
+        assert!(left.passes(1e-6));
     }
 }
 
@@ -300,12 +283,12 @@ fn a_good_sample_between_two_jumps_parts_them() {
     for (bad, reads_m) in BAD {
         let mut left = OneLeft::in_fault(bad, reads_m);
         for _ in 0..5 {
-            assert!(left.tick(5e-4) < OneLeft::LEVITATION_N);
+            assert!(!left.passes(5e-4));
             left.reads_m = 1e-5;
             left.tick(-5e-4);
             left.reads_m = reads_m;
         }
-        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
+        assert!(left.passes(1e-6));
     }
 }
 
@@ -319,14 +302,10 @@ fn a_coordinate_is_good_after_samples_of_its_own() {
         let [_, y] = on_circle(RADIUS_M, angle);
         // Near to where x was last seen.
         let x = stays_m + 1e-6 * angle.sin();
-        let position = [
-            if bad[0] { f32::NAN } else { x },
-            if bad[1] { f32::NAN } else { y },
-        ];
-        bench.sequence += u32::from(!again);
-        let mut now = sample(bench.sequence, position);
-        now.levitation_n = [700.0, 0.0];
-        bench.supervisor.tick(&now)
+        let coordinate = |bad: bool, at: f32| if bad { f32::NAN } else { at };
+        let position = [coordinate(bad[0], x), coordinate(bad[1], y)];
+        bench.sequence -= u32::from(again);
+        bench.tick_asking(position, [700.0, 0.0])
     };
     for _ in 0..12 {
         tick([true, false], false);

@@ -1,7 +1,7 @@
 //! The force–time budget: the cap that it leaves, and what the supervisor makes of less.
 
-use supervisor::{Command, Config, Events, Limits, Sample, Status, Supervisor};
-use test_support::rig::{config, length, sample, whirl};
+use supervisor::{Command, Config, Events, Limits, Status, Supervisor};
+use test_support::rig::{asking, config, config_with, length, sample, sample_with, whirl};
 
 /// The cap falls when the closed form says so, by the curve that is documented, to the force at which
 /// state and cap agree, and comes back by the same curve.
@@ -10,21 +10,19 @@ use test_support::rig::{config, length, sample, whirl};
 fn the_cap_follows_the_thermal_state() {
     for continuous in [300.0_f64, 500.0, 900.0] {
         let time_s = 0.5;
-        let with = Config {
-            continuous_force_n: continuous as f32,
-            thermal_time_s: time_s as f32,
-            ..config()
-        };
+        let limits = (continuous as f32, time_s as f32);
+        let with = config_with(|c| (c.continuous_force_n, c.thermal_time_s) = limits);
         let mut supervisor = Supervisor::<16>::new(&with).unwrap();
         let curve = |state: f64| {
             let x = ((state - 1.0) / 0.1).clamp(0.0, 1.0);
             1000.0 - (1000.0 - continuous) * x * x * (3.0 - 2.0 * x)
         };
         let mut tick = |i: u32, wanted_n: f32| {
-            let command = supervisor.tick(&Sample {
-                levitation_n: [0.6 * wanted_n, -0.8 * wanted_n],
-                ..sample(i, [1e-8 * (i % 100) as f32, 0.0])
-            });
+            let (at_m, asked_n) = (
+                [1e-8 * (i % 100) as f32, 0.0],
+                [0.6, -0.8].map(|x| x * wanted_n),
+            );
+            let command = supervisor.tick(&asking(i, at_m, asked_n));
             (command, supervisor.report())
         };
         let start = (1000.0 / continuous).powi(2);
@@ -44,10 +42,8 @@ fn the_cap_follows_the_thermal_state() {
             last = command;
         }
         let first = first.expect("ten time constants");
-        assert!(
-            first >= reaches_1_s - 1e-4 && first < 1.05 * reaches_1_s + 1e-3,
-            "{first} s, {reaches_1_s} s"
-        );
+        let in_time = first >= reaches_1_s - 1e-4 && first < 1.05 * reaches_1_s + 1e-3;
+        assert!(in_time, "{first} s, {reaches_1_s} s");
         let rest = length(last.force_n);
         assert!(rest > continuous && rest < 1.05 * continuous, "{rest} N");
         assert!(last.limits.contains(Limits::DERATED));
@@ -69,21 +65,16 @@ fn the_cap_follows_the_thermal_state() {
 /// Requirements: SR-05, SR-08
 #[test]
 fn missed_ticks_are_charged_with_what_acts() {
+    let _with = config_with(|c| (c.continuous_force_n, c.thermal_time_s) = (125.0, 0.5));
+    let with = config_with(|c| (c.continuous_force_n, c.thermal_time_s) = (125.0, 0.5));
     let charged = |status: Status| {
-        let mut supervisor = Supervisor::<16>::new(&Config {
-            continuous_force_n: 125.0,
-            thermal_time_s: 0.5,
-            ..config()
-        })
-        .unwrap();
+        let mut supervisor = Supervisor::<16>::new(&with).unwrap();
         for i in 0..2000_u32 {
             // Four missed after every second.
-            let sequence = i + i / 2 * 4;
-            let command = supervisor.tick(&Sample {
-                status,
-                levitation_n: [100.0, 0.0],
-                ..sample(sequence, [1e-8 * (i % 100) as f32, 0.0])
-            });
+            let at_m = [1e-8 * (i % 100) as f32, 0.0];
+            let command = supervisor.tick(&sample_with(i + i / 2 * 4, at_m, |s| {
+                (s.status, s.levitation_n) = (status, [100.0, 0.0]);
+            }));
             assert_eq!(command.force_n, [100.0, 0.0]);
         }
         supervisor.report().thermal_state
@@ -109,18 +100,12 @@ fn a_gap_does_not_overshoot() {
     })
     .unwrap();
     let mut heat = |i: u32, wanted_n: f32| {
-        supervisor.tick(&Sample {
-            levitation_n: [wanted_n, 0.0],
-            ..sample(5 * i, [1e-8 * i as f32, 0.0])
-        });
+        supervisor.tick(&asking(5 * i, [1e-8 * i as f32, 0.0], [wanted_n, 0.0]));
         supervisor.report().thermal_state
     };
     let hot: Vec<f32> = (0..10).map(|i| heat(i, 400.0)).collect();
-    assert!(
-        hot.iter().all(|state| (0.0..0.6401).contains(state)),
-        "{hot:?}"
-    );
-    assert!(hot[9] > 0.63);
+    let warm = hot.iter().all(|state| (0.0..0.6401).contains(state));
+    assert!(warm && hot[9] > 0.63, "{hot:?}");
     let cold: Vec<f32> = (10..20).map(|i| heat(i, 0.0)).collect();
     assert!(cold.iter().all(|state| *state >= 0.0), "{cold:?}");
 }
@@ -133,18 +118,12 @@ const FIRST: f32 = -0.8;
 /// Where the supervisor takes over from a levitation controller that does nothing, after `warm_ticks` of the whole
 /// cap there and back, and the cap then; in clearances and caps.
 fn takes_over(warm_ticks: u32) -> (f64, f64) {
-    let config = Config {
-        continuous_force_n: 300.0,
-        thermal_time_s: 0.5,
-        ..config()
-    };
+    let config = config_with(|c| (c.continuous_force_n, c.thermal_time_s) = (300.0, 0.5));
     let mut supervisor = Supervisor::<16>::new(&config).unwrap();
     for i in 0..warm_ticks {
         let force_n = if i % 2 == 0 { 1000.0 } else { -1000.0 };
-        supervisor.tick(&Sample {
-            levitation_n: [0.0, force_n],
-            ..sample(i, [FIRST * 2e-4 + 1e-8 * (i % 100) as f32, 0.0])
-        });
+        let at_m = [FIRST * 2e-4 + 1e-8 * (i % 100) as f32, 0.0];
+        supervisor.tick(&asking(i, at_m, [0.0, force_n]));
     }
     let way_m = SPEED_M_S * config.sample_period_s;
     for i in 0.. {
@@ -170,10 +149,8 @@ fn a_warm_magnet_takes_over_earlier() {
         let (radius, cap) = takes_over(warm_ticks);
         // (5.8) with the cap: r where v² = 2·s·(1 − r − v·H) + κ·(1 − r²).
         let left = |r: f64| 2.0 * cap * (1.0 - r - v * horizon) + kappa * (1.0 - r * r) - v * v;
-        let expected = (0..10_000)
-            .map(|i| 1e-4 * f64::from(i))
-            .find(|r| left(*r) < 0.0)
-            .unwrap();
+        let mut radii_below = (0..10_000).map(|i| 1e-4 * f64::from(i));
+        let expected = radii_below.find(|r| left(*r) < 0.0).unwrap();
         println!("cap {cap}, takes over at {radius}, expected {expected}");
         radii.push((radius, cap));
         // A tick's way is 0.025 clearances.

@@ -2,7 +2,9 @@
 
 use proptest::prelude::*;
 use supervisor::{Command, Config, Events, Mode, Sample, Status, Supervisor};
-use test_support::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample};
+use test_support::rig::{
+    RADIUS_M, WHIRL_STEP, asking, config, config_with, on_circle, sample_with, ticks_of,
+};
 
 /// What a drive makes of a command \[N\].
 type Makes = fn([f32; 2]) -> [f32; 2];
@@ -31,8 +33,7 @@ impl DriveLoop {
     /// A tick in a whirl; the amplifier gets what the drive makes of the command.
     fn tick(&mut self, makes: Makes, status: Status) -> Command {
         let position_m = on_circle(RADIUS_M, WHIRL_STEP * (self.sequence + 1) as f32);
-        let mut now = sample(0, position_m);
-        now.status |= status;
+        let now = sample_with(0, position_m, |now| now.status |= status);
         self.tick_of(now, makes)
     }
 
@@ -45,17 +46,12 @@ impl DriveLoop {
             ..now
         });
         self.line.push(command.force_n);
-        let wanted = makes(self.line.remove(0));
-        self.deliver(wanted);
-        command
-    }
-
-    /// A tick of the amplifier.
-    fn deliver(&mut self, wanted_n: [f32; 2]) {
+        let wanted_n = makes(self.line.remove(0));
         let left = (-50e-6 / self.lag_s).exp();
         for (delivered_n, to) in self.delivered_n.iter_mut().zip(wanted_n) {
             *delivered_n = to + (*delivered_n - to) * left;
         }
+        command
     }
 }
 
@@ -64,13 +60,10 @@ const OBEYS: Makes = |force| force;
 /// A sample of a rotor in the middle, with what levitation commands and the force that is measured.
 fn in_the_middle(sequence: u32, levitation_n: [f32; 2], applied_n: [f32; 2]) -> Sample {
     let position_m = [5, 7].map(|turns| 1e-6 * (sequence % turns) as f32);
-    let now = sample(sequence, position_m);
-    Sample {
-        status: now.status | Status::APPLIED_VALID,
-        levitation_n,
-        applied_n,
-        ..now
-    }
+    sample_with(sequence, position_m, |now| {
+        now.status |= Status::APPLIED_VALID;
+        (now.levitation_n, now.applied_n) = (levitation_n, applied_n);
+    })
 }
 
 proptest! {
@@ -87,7 +80,7 @@ proptest! {
         fault_ticks in 5..20_u32,
         commands in prop::collection::vec(([-1000.0..1000.0_f32, -1000.0..1000.0_f32], 1..40_u32), 1..60),
     ) {
-        let with = Config { fault_ticks: fault_ticks as f32, ..config() };
+        let with = config_with(|c| c.fault_ticks = fault_ticks as f32);
         let mut drive = DriveLoop::new(&with, lag * with.amplifier_lag_s, delay);
         for (levitation_n, ticks) in commands {
             for _ in 0..ticks {
@@ -106,24 +99,18 @@ proptest! {
 #[test]
 fn a_slow_drive_is_left_alone() {
     for sample_period_s in [20e-6_f32, 50e-6, 100e-6] {
-        left_alone(&Config {
-            sample_period_s,
-            ..config()
-        });
-    }
-}
-
-fn left_alone(with: &Config) {
-    let mut supervisor = Supervisor::<64>::new(with).unwrap();
-    let mut delivered_n = [0.0_f32; 2];
-    for i in 0..4000_u32 {
-        let full = if i / 400 % 2 == 0 { 900.0 } else { -900.0 };
-        let command = supervisor.tick(&in_the_middle(i, [full, 100.0], delivered_n));
-        assert!(!command.events.contains(Events::AXIS_LOST), "{i}");
-        for (delivered_n, to) in delivered_n.iter_mut().zip(command.force_n) {
-            // From one cap to the other in 4 ms, a dozen times slower than the lag alone.
-            let most = 5e5 * with.sample_period_s;
-            *delivered_n += (to - *delivered_n).clamp(-most, most);
+        let with = config_with(|c| c.sample_period_s = sample_period_s);
+        let mut supervisor = Supervisor::<64>::new(&with).unwrap();
+        let mut delivered_n = [0.0_f32; 2];
+        for i in 0..4000_u32 {
+            let full = if i / 400 % 2 == 0 { 900.0 } else { -900.0 };
+            let command = supervisor.tick(&in_the_middle(i, [full, 100.0], delivered_n));
+            assert!(!command.events.contains(Events::AXIS_LOST), "{i}");
+            for (delivered_n, to) in delivered_n.iter_mut().zip(command.force_n) {
+                // From one cap to the other in 4 ms, a dozen times slower than the lag alone.
+                let most = 5e5 * sample_period_s;
+                *delivered_n += (to - *delivered_n).clamp(-most, most);
+            }
         }
     }
 }
@@ -143,25 +130,18 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
         ("y stuck", |[x, _]| [x, 900.0], [false, true]),
     ];
     for (name, makes, wrong) in drives {
-        let with = Config {
-            fault_ticks: 5.0,
-            ..config()
-        };
+        let with = config_with(|c| c.fault_ticks = 5.0);
         let mut drive = DriveLoop::new(&with, with.amplifier_lag_s, 1);
         for _ in 0..300 {
             let command = drive.tick(OBEYS, Status::APPLIED_VALID);
             assert!(!command.events.contains(Events::AXIS_LOST), "{name}");
         }
-        let commands: Vec<_> = (0..500)
-            .map(|i| match i {
-                // A tick without a measured force ends no rest.
-                _ if i % 100 == 99 => drive.tick(makes, Status::empty()),
-                _ => drive.tick(makes, Status::APPLIED_VALID),
-            })
-            .collect();
-        let with = |event| commands.iter().filter(move |c| c.events.contains(event));
-        assert!(with(Events::AXIS_LOST).count() >= 3, "{name}");
-        assert!(with(Events::AXIS_BACK).count() >= 3, "{name}: tried again");
+        // A tick without a measured force ends no rest.
+        let measured = |i| [Status::APPLIED_VALID, Status::empty()][usize::from(i % 100 == 99)];
+        let commands: Vec<_> = (0..500).map(|i| drive.tick(makes, measured(i))).collect();
+        let seen = |event| ticks_of(&commands, event).len();
+        assert!(seen(Events::AXIS_LOST) >= 3, "{name}");
+        assert!(seen(Events::AXIS_BACK) >= 3, "{name}: tried again");
         assert!(commands.iter().all(|c| c.mode != Mode::SensorFault));
         for (axis, wrong) in wrong.into_iter().enumerate() {
             let zero: Vec<bool> = commands.iter().map(|c| c.force_n[axis] == 0.0).collect();
@@ -174,11 +154,9 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
             assert!(first.is_some_and(|i| i <= 70), "{name}: {first:?}");
         }
         // In order again, it is believed again.
-        let after: Vec<_> = (0..200)
-            .map(|_| drive.tick(OBEYS, Status::APPLIED_VALID))
-            .collect();
-        let lost = |c: &Command| c.events.contains(Events::AXIS_LOST);
-        assert!(!after[60..].iter().any(lost), "{name}");
+        let tick = |_| drive.tick(OBEYS, Status::APPLIED_VALID);
+        let after: Vec<_> = (0..200).map(tick).collect();
+        assert_eq!(ticks_of(&after[60..], Events::AXIS_LOST).len(), 0, "{name}");
     }
 }
 
@@ -205,11 +183,7 @@ fn what_the_bearing_carries_at_first_is_believed() {
     let held_n = [-900.0, 400.0];
     let against_n = held_n.map(|force_n: f32| -force_n);
     for delay_samples in [0.0, 1.0, 3.0, 7.0] {
-        let with = Config {
-            delay_samples,
-            fault_ticks: 2.0,
-            ..config()
-        };
+        let with = config_with(|c| (c.delay_samples, c.fault_ticks) = (delay_samples, 2.0));
         for (what, ticks, status, gap) in [
             ("start", 0, Status::empty(), 0),
             ("measured late", 100, Status::APPLIED_VALID, 0),
@@ -242,10 +216,7 @@ fn what_the_bearing_carries_at_first_is_believed() {
 /// Nothing is expected of an axis that is reported lost: what is left of its force dies away, and when it is back, it is.
 #[test]
 fn an_axis_that_is_reported_lost_is_not_judged() {
-    let with = Config {
-        fault_ticks: 2.0,
-        ..config()
-    };
+    let with = config_with(|c| c.fault_ticks = 2.0);
     let mut supervisor = Supervisor::<64>::new(&with).unwrap();
     let mut applied_n = [900.0, 0.0];
     for i in 0..200 {
@@ -270,8 +241,8 @@ fn off_and_on_ends_a_rest() {
         assert!(ticks.any(|command| command.events.contains(Events::AXIS_LOST)));
         drive.sequence += 1;
         let position_m = on_circle(RADIUS_M, WHIRL_STEP * drive.sequence as f32);
-        let mut off = sample(drive.sequence, position_m);
-        off.status = (off.status | measured) - Status::BEARING_ON;
+        let status = |s: Status| (s | measured) - Status::BEARING_ON;
+        let off = sample_with(drive.sequence, position_m, |s| s.status = status(s.status));
         drive.supervisor.tick(&off);
         // A turn of the whirl: both axes are needed.
         let mut largest_n = [0.0_f32; 2];
@@ -293,8 +264,11 @@ fn in_shadow_nothing_is_taken_from_the_levitation_controller() {
     for i in 0..600_u32 {
         let shadow = i < 590;
         let full = if i / 50 % 2 == 0 { 900.0 } else { -900.0 };
-        let mut now = sample(0, on_circle(RADIUS_M, WHIRL_STEP * i as f32));
-        now.levitation_n = [full, -300.0];
+        let mut now = asking(
+            0,
+            on_circle(RADIUS_M, WHIRL_STEP * i as f32),
+            [full, -300.0],
+        );
         now.status |= Status::APPLIED_VALID;
         now.status.set(Status::SHADOW, shadow);
         let command = drive.tick_of(now, |[x, y]| [-x, y]);
@@ -309,19 +283,15 @@ fn in_shadow_nothing_is_taken_from_the_levitation_controller() {
 #[test]
 fn an_axis_is_lost_and_tried_again_after_its_time_to_the_tick() {
     for fault_ticks in [2, 5, 15, 40] {
-        let with = Config {
-            fault_ticks: fault_ticks as f32,
-            ..config()
-        };
+        let with = config_with(|c| c.fault_ticks = fault_ticks as f32);
         let mut supervisor = Supervisor::<64>::new(&with).unwrap();
         let obeys_until = 100;
-        let commands: Vec<_> = (0..obeys_until + 200)
-            .map(|i| {
-                let applied_n = if i < obeys_until { 500.0 } else { -500.0 };
-                supervisor.tick(&in_the_middle(i, [500.0, 0.0], [applied_n, 0.0]))
-            })
-            .collect();
-        let first = |event| (commands.iter().position(|c| c.events.contains(event))).unwrap();
+        let ticks = (0..obeys_until + 200).map(|i| {
+            let applied_n = if i < obeys_until { 500.0 } else { -500.0 };
+            supervisor.tick(&in_the_middle(i, [500.0, 0.0], [applied_n, 0.0]))
+        });
+        let commands: Vec<_> = ticks.collect();
+        let first = |event| ticks_of(&commands, event)[0];
         let (lost, back) = (first(Events::AXIS_LOST), first(Events::AXIS_BACK));
         // Nothing from the tick after the last of them on.
         let ticks = fault_ticks.min(15);

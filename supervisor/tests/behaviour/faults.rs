@@ -1,8 +1,8 @@
 //! A fault of the sensor: what the supervisor does in it, and how it comes back.
 
-use supervisor::{Command, Config, Events, Mode, Sample, Status, Supervisor};
+use supervisor::{Command, Config, Events, Mode, Status, Supervisor};
 use test_support::bench::{Bench, WHIRL_STEP};
-use test_support::rig::{RADIUS_M, config, length, on_circle, sample};
+use test_support::rig::{RADIUS_M, apart, asking, config, config_with, length, on_circle};
 
 /// In a fault each component falls by the same in every tick, the cap in `fault_blend_s`, and stays zero as long as the
 /// sensor is bad.
@@ -10,15 +10,10 @@ use test_support::rig::{RADIUS_M, config, length, on_circle, sample};
 #[test]
 fn the_force_is_blended_to_zero_in_the_configured_time() {
     for blend_s in [0.0_f32, 5e-4, 2e-3] {
-        let with = Config {
-            fault_blend_s: blend_s,
-            ..config()
-        };
+        let with = config_with(|c| c.fault_blend_s = blend_s);
         let (mut bench, _) = Bench::whirl(&with);
-        let forces: Vec<[f32; 2]> = (0..200)
-            .map(|_| bench.tick([f32::NAN; 2]).force_n)
-            .skip(8)
-            .collect();
+        let forces = (0..200).map(|_| bench.tick([f32::NAN; 2]).force_n);
+        let forces: Vec<[f32; 2]> = forces.skip(8).collect();
         let (last, fading) = forces.split_first().unwrap();
         assert!(length(*last) > 990.0);
         let ticks = (blend_s / 50e-6).round().max(1.0);
@@ -39,22 +34,12 @@ fn the_force_is_blended_to_zero_in_the_configured_time() {
 #[test]
 fn a_fault_ends_after_enough_good_samples_in_a_row() {
     for good_ticks in [2_u32, 10, 25] {
-        let with = Config {
-            fault_ticks: good_ticks as f32,
-            ..config()
-        };
-        let after = |whirl: bool, bad_ticks: u32| {
-            let mut bench = if whirl {
-                Bench::whirl(&with).0
-            } else {
-                Bench::new(&with)
-            };
+        let with = config_with(|c| c.fault_ticks = good_ticks as f32);
+        let after = |mut bench: Bench, bad_ticks: u32| {
             while bench.supervisor.mode() != Mode::SensorFault {
                 bench.tick([f32::NAN; 2]);
             }
-            for _ in 0..bad_ticks {
-                bench.tick([f32::NAN; 2]);
-            }
+            bench.ticks(bad_ticks, [f32::NAN; 2]);
             // One too few, and a bad one.
             for i in 0..good_ticks - 1 {
                 let command = bench.tick([3e-5, 1e-7 * i as f32]);
@@ -72,9 +57,10 @@ fn a_fault_ends_after_enough_good_samples_in_a_row() {
             }
             forces
         };
-        let forces = after(true, 100);
-        assert_eq!(forces, after(false, 100));
-        assert_eq!(forces, after(true, 5000));
+        let whirl = || Bench::whirl(&with).0;
+        let forces = after(whirl(), 100);
+        assert_eq!(forces, after(Bench::new(&with), 100));
+        assert_eq!(forces, after(whirl(), 5000));
         // At rest near the middle.
         assert!(forces.iter().all(|force_n| length(*force_n) < 200.0));
     }
@@ -84,25 +70,15 @@ fn a_fault_ends_after_enough_good_samples_in_a_row() {
 /// Requirement: SR-17
 #[test]
 fn a_levitated_rotor_loses_its_force_in_the_time_of_a_hand_over() {
-    let with = Config {
-        fault_blend_s: 2e-2,
-        ..config()
-    };
+    let with = config_with(|c| c.fault_blend_s = 2e-2);
     let step_n = 1000.0 * with.sample_period_s / with.handover_blend_s;
     let mut supervisor = Supervisor::<64>::new(&with).unwrap();
     let mut i = 0;
     let mut tick = |good: bool| {
         i += 1;
         let jitter_m = 1e-8 * (i % 7) as f32;
-        let position_m = if good {
-            [2e-5 + jitter_m, jitter_m]
-        } else {
-            [f32::NAN; 2]
-        };
-        supervisor.tick(&Sample {
-            levitation_n: [-900.0, 0.0],
-            ..sample(i, position_m)
-        })
+        let position_m = [[f32::NAN; 2], [2e-5 + jitter_m, jitter_m]][usize::from(good)];
+        supervisor.tick(&asking(i, position_m, [-900.0, 0.0]))
     };
     for _ in 0..100 {
         assert_eq!(tick(true).mode, Mode::Levitated);
@@ -141,10 +117,8 @@ fn without_any_sample_no_law_acts() {
             assert_eq!(command.events.contains(Events::SENSOR_FAULT), i == 0);
             // Along each axis it keeps its sign and falls.
             for (now, last) in command.force_n.into_iter().zip(last) {
-                assert!(
-                    now * last >= 0.0 && now.abs() <= last.abs(),
-                    "{command:?} after {last:?}"
-                );
+                let falls = now * last >= 0.0 && now.abs() <= last.abs();
+                assert!(falls, "{command:?} after {last:?}");
             }
             last = command.force_n;
         }
@@ -155,23 +129,17 @@ fn without_any_sample_no_law_acts() {
 /// What nobody saw was no contact: a rotor that had just touched when the sensor failed is not whirling because of that.
 #[test]
 fn unseen_time_is_no_time_in_contact() {
-    let with = Config {
-        fault_ticks: 4.0,
-        ..config()
-    };
+    let with = config_with(|c| c.fault_ticks = 4.0);
     let mut bench = Bench::new(&with);
     for i in 0..60 {
         bench.tick(on_circle(1.8e-4, 0.09 * i as f32));
     }
     bench.tick(on_circle(RADIUS_M, 5.4));
-    for _ in 0..200 {
-        bench.tick([f32::NAN; 2]);
-    }
+    bench.ticks(200, [f32::NAN; 2]);
     let mut events = Events::empty();
     for i in 0..40 {
         let radius_m = if i == 6 { RADIUS_M } else { 1.85e-4 };
-        let position = on_circle(radius_m, 0.09 * i as f32);
-        events |= bench.tick(position).events;
+        events |= bench.tick(on_circle(radius_m, 0.09 * i as f32)).events;
     }
     assert!(events.contains(Events::SENSOR_OK | Events::TOUCHED));
     assert!(!events.contains(Events::WHIRL), "{events:?}");
@@ -192,19 +160,14 @@ fn samples_refused_for_long_leave_an_estimate_that_comes_back() {
         for i in 0..100 {
             bench.tick([2e-5, 1e-7 * (i % 3) as f32]);
         }
-        for _ in 0..refused {
-            bench.tick([f32::NAN; 2]);
-        }
+        bench.ticks(refused, [f32::NAN; 2]);
         let whirl = (0..200).map(|i| bench.tick(on_circle(RADIUS_M, WHIRL_STEP * i as f32)));
         let last = whirl.last().unwrap();
         assert_eq!(last.mode, Mode::BackwardWhirl, "{refused}");
         last.force_n
     };
     let [with, without] = [run(9000), run(0)];
-    assert!(
-        length([with[0] - without[0], with[1] - without[1]]) < 10.0,
-        "{with:?} {without:?}"
-    );
+    assert!(apart(with, without) < 10.0, "{with:?} {without:?}");
 }
 
 /// In shadow a fault of the sensor takes nothing from the levitation command, and what the supervisor would command still leaves
@@ -215,12 +178,11 @@ fn in_shadow_a_fault_takes_nothing_from_the_levitation_controller() {
     let (mut bench, angle) = Bench::whirl(&config());
     for i in 0..100 {
         let [_, y] = on_circle(RADIUS_M, angle + WHIRL_STEP * i as f32);
-        bench.sequence += 1;
-        let mut now = sample(bench.sequence, [f32::NAN, y]);
-        now.status |= Status::SHADOW;
-        now.levitation_n = [-800.0, 500.0];
-        let command = bench.supervisor.tick(&now);
-        assert_eq!(command.force_n, now.levitation_n);
+        let command = bench.tick_with([f32::NAN, y], |now| {
+            now.status |= Status::SHADOW;
+            now.levitation_n = [-800.0, 500.0];
+        });
+        assert_eq!(command.force_n, [-800.0, 500.0]);
         if i > 70 {
             assert_eq!(command.mode, Mode::SensorFault);
             assert_eq!(command.own_n, [0.0, 500.0]);

@@ -2,15 +2,15 @@
 
 use supervisor::{Command, Status, Supervisor};
 use test_support::bench::{Bench, WHIRL_STEP};
-use test_support::rig::{RADIUS_M, config, length, on_circle, sample};
+use test_support::rig::{RADIUS_M, config, length, new_supervisor, on_circle, sample, sample_with};
 
 /// Command to the very first sample, at a radius on the x axis \[clearances\].
 fn first(radius: f32, status: Status) -> Command {
-    let mut s = sample(0, [radius * config().clearance_m, 0.0]);
-    s.status = status;
+    let at_m = [radius * config().clearance_m, 0.0];
     // Of a controller that has no force to spare.
-    s.levitation_n = [-900.0, 0.0];
-    Supervisor::<64>::new(&config()).unwrap().tick(&s)
+    new_supervisor().tick(&sample_with(0, at_m, |s| {
+        (s.status, s.levitation_n) = (status, [-900.0, 0.0]);
+    }))
 }
 
 /// Pressed deeper than the contact band, with a known spin: the whole cap against backward whirl, and ahead of the
@@ -73,10 +73,8 @@ fn the_first_velocity_is_of_two_samples_in_a_row() {
                 }
             }
             let most = f64::from(bench.supervisor.report().backward_speed_max_m_s);
-            assert!(
-                (0.95..1.1).contains(&(most / true_m_s)),
-                "{missed}, {refused}: {most}"
-            );
+            let share = most / true_m_s;
+            assert!((0.95..1.1).contains(&share), "{missed}, {refused}: {share}");
         }
     }
 }

@@ -1,11 +1,10 @@
 //! The ledger of landings: what it adds up, what it says is left, and what it makes of bytes that are none of its own.
 
 use supervisor::{
-    Core, LEDGER_BYTES, Ledger, LedgerError, Prepared, Q, RotorSupervisor, Summary, Supervisor,
-    crc_of,
+    Core, LEDGER_BYTES, Ledger, LedgerError, Prepared, Q, Summary, Supervisor, crc_of,
 };
 use test_support::in_numbers;
-use test_support::rig::{LANDING_TICKS as LANDING, config, landing, sample, shaft};
+use test_support::rig::{LANDING_TICKS as LANDING, config, landing, new_rotor, quiet, sample};
 
 /// Totals since the supervisor was made, as the record of an event has them.
 fn totals(landings: u32, severity_index: f32) -> Summary {
@@ -80,11 +79,11 @@ fn landings_without_a_record_are_in_the_ledger() {
 fn every_kind_of_record_can_be_added() {
     let mut core = Core::<Q, 64>::new(&Prepared::new(&config()).unwrap());
     let scaling = config().scaling();
-    let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = new_rotor(&config());
     for i in 0..LANDING {
         let at = sample(i, landing(i));
         core.tick(&in_numbers(&scaling.sample(&at)));
-        rotor.tick(&[at, sample(i, [1e-6 * (i % 3) as f32; 2])]);
+        rotor.tick(&[at, sample(i, quiet(i))]);
     }
     let mut ledgers = [1, 2, 3].map(|bearing| Ledger::new(bearing, 20.0));
     let [of_core, first, second] = &mut ledgers;
@@ -98,32 +97,23 @@ fn every_kind_of_record_can_be_added() {
 fn what_is_left_is_the_allowance_less_the_sum() {
     let mut ledger = Ledger::new(7, 20.0);
     assert_eq!(ledger.landings_left(0.5), Some(40));
-    assert_eq!(
-        ledger.landings_left(ledger.worst_severity),
-        None,
-        "no landing yet"
-    );
-    assert_eq!(ledger.landings_left(f32::NAN), None);
-    assert_eq!(ledger.landings_left(-1.0), None);
-    assert_eq!(ledger.landings_left(f32::INFINITY), Some(0));
-    assert_eq!(ledger.landings_left(1e-6), Some(20_000_000));
+    // The worst is none yet.
+    let none_yet = ledger.worst_severity;
+    let left = [none_yet, f32::NAN, -1.0, f32::INFINITY, 1e-6].map(|s| ledger.landings_left(s));
+    assert_eq!(left, [None, None, None, Some(0), Some(20_000_000)]);
     assert!(ledger.add(&totals(1, 0.5), 11) && ledger.add(&totals(2, 2.0), 12));
     assert_eq!((ledger.worst_severity, ledger.closed_at), (1.5, 12));
     assert_eq!((ledger.severity_sum(), ledger.severity_left()), (2.0, 18.0));
-    assert_eq!(
-        [0.5, 1.5].map(|s| ledger.landings_left(s)),
-        [Some(36), Some(12)]
-    );
+    let left = [0.5, 1.5].map(|s| ledger.landings_left(s));
+    assert_eq!(left, [Some(36), Some(12)]);
     // What a change of units makes of the last bits is no new supervisor.
     assert!(!ledger.add(&totals(2, 2.0 - 1e-6), 13));
     // One that was made anew is noticed by counting less.
     assert!(ledger.add(&totals(1, 0.25), 14));
     assert_eq!((ledger.landings, ledger.severity_sum()), (3, 2.25));
     assert!(ledger.add(&totals(2, 30.0), 15));
-    assert_eq!(
-        (ledger.severity_left(), ledger.landings_left(1e-3)),
-        (0.0, Some(0))
-    );
+    let left = (ledger.severity_left(), ledger.landings_left(1e-3));
+    assert_eq!(left, (0.0, Some(0)));
 }
 
 /// A sum of `f32` would stand still here: 10⁵ landings of 10⁻³ on top of 2¹⁶.
@@ -141,17 +131,10 @@ fn light_landings_count_however_large_the_sum_is() {
 /// Any values of the fields, and any bits, give bytes and figures without a panic.
 #[test]
 fn nothing_overflows() {
-    let odd = [
-        f32::NAN,
-        f32::INFINITY,
-        -f32::INFINITY,
-        -1.0,
-        0.0,
-        f32::MAX,
-        1e-40,
-    ];
-    for allowed in odd {
-        for index in odd {
+    let infinities = [f32::INFINITY, -f32::INFINITY];
+    let odd = [&infinities[..], &[f32::NAN, -1.0, 0.0, f32::MAX, 1e-40]].concat();
+    for &allowed in &odd {
+        for &index in &odd {
             let mut ledger = Ledger {
                 updates: u32::MAX,
                 landings: u32::MAX,
@@ -181,23 +164,19 @@ fn sample_ledger() -> Ledger {
 #[test]
 fn damage_is_named_and_never_a_figure() {
     let whole = sample_ledger().to_bytes();
-    let flipped = |bits: &mut dyn Iterator<Item = usize>| {
+    let flipped = |bits: &[usize]| {
         let mut bytes = whole;
-        bits.for_each(|bit| bytes[bit / 8] ^= 1 << (bit % 8));
+        bits.iter().for_each(|bit| bytes[bit / 8] ^= 1 << (bit % 8));
         Ledger::from_bytes(&bytes)
     };
     let named = [LedgerError::Damaged, LedgerError::Letters];
     let bits = 8 * LEDGER_BYTES;
     for first in 0..bits {
         for second in first..bits {
-            let ends = flipped(
-                &mut [first, second]
-                    .into_iter()
-                    .take(1 + usize::from(second > first)),
-            );
+            let ends = flipped(&[first, second][usize::from(first == second)..]);
             assert!(named.map(Err).contains(&ends), "bits {first}, {second}");
             if second < first + 32 {
-                let run = flipped(&mut (first..=second));
+                let run = flipped(&(first..=second).collect::<Vec<_>>());
                 assert!(named.map(Err).contains(&run), "bits {first} to {second}");
             }
         }
@@ -238,10 +217,8 @@ fn a_fresh_ledger_is_told_from_a_lost_one() {
         worst_severity: f32::NAN,
         ..fresh
     };
-    assert_eq!(
-        Ledger::from_bytes(&odd.to_bytes()),
-        Err(LedgerError::Damaged)
-    );
+    let read = Ledger::from_bytes(&odd.to_bytes());
+    assert_eq!(read, Err(LedgerError::Damaged));
 }
 
 /// Of two copies that are written in turn one is whole at any time, wherever a write is cut.
@@ -260,11 +237,8 @@ fn two_copies_outlive_a_cut() {
             cut[place][..length].copy_from_slice(&next[..length]);
             let (found, other) = Ledger::newer([&cut[0], &cut[1]]).unwrap();
             let done = cut[place] == next;
-            assert_eq!(
-                found.updates,
-                landing - u32::from(!done),
-                "{landing}, {length}"
-            );
+            let updates = landing - u32::from(!done);
+            assert_eq!(found.updates, updates, "{landing}, {length}");
             assert_eq!(other.is_some(), cut[place] != places[place] && !done);
         }
         places[place] = next;

@@ -1,9 +1,9 @@
 //! Samples that cannot be: how soon the supervisor refuses them, what it does meanwhile, and when they make a fault.
 
 use super::trust::{C_M, noise};
-use supervisor::{Command, Config, Events, Limits, Mode, RejectReason, Status};
+use supervisor::{Command, Events, Limits, Mode, RejectReason, Status};
 use test_support::bench::{Bench, WHIRL_STEP};
-use test_support::rig::{RADIUS_M, config, length, on_circle, sample};
+use test_support::rig::{RADIUS_M, apart, asking, config, config_with, length, on_circle, sample};
 use test_support::storm::Chance;
 
 /// Ticks of these samples until the fault, each refused from the first on.
@@ -33,11 +33,7 @@ fn what_is_no_number_or_out_of_range_is_refused_at_once() {
     ];
     for (position_m, why) in cases {
         for fault_ticks in [2.0, 10.0] {
-            let with = Config {
-                fault_ticks,
-                ..config()
-            };
-            let (mut bench, _) = Bench::whirl(&with);
+            let (mut bench, _) = Bench::whirl(&config_with(|c| c.fault_ticks = fault_ticks));
             let mut reasons = Vec::new();
             let ticks = ticks_to_fault(|_| {
                 let command = bench.tick(position_m);
@@ -112,9 +108,9 @@ fn a_single_bad_sample_neither_drops_the_force_nor_kicks() {
             let without = clean.tick(&sample(bench.sequence, good));
             assert_eq!(command.mode, Mode::BackwardWhirl);
             assert_eq!(command.limits.contains(Limits::SAMPLE_REFUSED), bad);
-            let off = [0, 1].map(|k| command.force_n[k] - without.force_n[k]);
             assert!(length(command.force_n) > 990.0);
-            assert!(length(off) < 60.0, "{i}: {off:?} N off");
+            let off_n = apart(command.force_n, without.force_n);
+            assert!(off_n < 60.0, "{i}: {off_n} N off");
         }
     }
 }
@@ -124,36 +120,32 @@ fn a_single_bad_sample_neither_drops_the_force_nor_kicks() {
 /// Requirement: SR-16
 #[test]
 fn the_command_of_a_sample_that_cannot_be_does_not_go_through() {
-    for (status, through) in [
-        (Status::empty(), false),
-        (Status::SHADOW, true),
-        (Status::BEARING_ON, true),
-    ] {
+    let (acts, shadow, off) = (Status::empty(), Status::SHADOW, Status::BEARING_ON);
+    for (status, through) in [(acts, false), (shadow, true), (off, true)] {
         // The last is merely doubted.
         for bad in [[f32::NAN, 0.0], [7e-4, 0.0], [1.0, 1.0], [4e-5, 0.0]] {
             let (mut bench, mut last) = (Bench::new(&config()), [0.0; 2]);
             for i in 0..300 {
-                bench.sequence += 1;
                 let refused = i % 10 == 9;
                 let good = [1e-6 * (i % 7) as f32, 1e-6 * (i % 3) as f32];
-                let mut now = sample(bench.sequence, if refused { bad } else { good });
-                now.status ^= status;
-                now.levitation_n = if refused {
-                    [900.0, -100.0]
-                } else {
-                    [0.3 * i as f32, -20.0]
+                let [position_m, levitation_n] = match refused {
+                    true => [bad, [900.0, -100.0]],
+                    false => [good, [0.3 * i as f32, -20.0]],
                 };
+                bench.sequence += 1;
+                let mut now = asking(bench.sequence, position_m, levitation_n);
+                now.status ^= status;
                 let command = bench.supervisor.tick(&now);
                 assert_eq!(command.mode, Mode::Levitated);
                 assert_eq!(command.limits.contains(Limits::SAMPLE_REFUSED), refused);
                 let doubted = bench.supervisor.report().refusal == RejectReason::Doubted;
                 assert!(doubted || !refused || bad != [4e-5, 0.0]);
                 if refused && !through {
-                    let off = [0, 1].map(|k| command.force_n[k] - last[k]);
-                    assert!(length(off) < 1e-4, "{command:?} after {last:?}");
+                    let off_n = apart(command.force_n, last);
+                    assert!(off_n < 1e-4, "{command:?} after {last:?}");
                 } else {
-                    assert_eq!(command.force_n, now.levitation_n);
-                    last = now.levitation_n;
+                    assert_eq!(command.force_n, levitation_n);
+                    last = levitation_n;
                 }
                 if i % 10 == 4 {
                     now.levitation_n[0] += 1.0;
@@ -170,10 +162,7 @@ fn the_command_of_a_sample_that_cannot_be_does_not_go_through() {
 /// In a hand-over, too, what the controller makes of a sample that cannot be does not go through.
 #[test]
 fn in_a_hand_over_the_answer_to_such_a_sample_does_not_go_through() {
-    let with = Config {
-        handover_blend_s: 0.01,
-        ..config()
-    };
+    let with = config_with(|c| c.handover_blend_s = 0.01);
     for bad in [[f32::NAN, 0.0], [7e-4, 0.0]] {
         let (mut bench, angle) = Bench::whirl(&with);
         let mut radius_m = RADIUS_M;
@@ -181,17 +170,13 @@ fn in_a_hand_over_the_answer_to_such_a_sample_does_not_go_through() {
         for i in 0..400 {
             radius_m = (radius_m - 1e-5).max(1e-6 * (1.0 + (i % 5) as f32));
             let refused = bench.supervisor.mode() == Mode::Handover && i % 10 == 9;
-            let [x, y] = on_circle(radius_m, angle);
-            bench.sequence += 1;
-            let mut now = sample(bench.sequence, if refused { bad } else { [x, y] });
-            if refused {
-                now.levitation_n = [-1e4, 0.0];
-            }
-            let command = bench.supervisor.tick(&now);
+            let good = (on_circle(radius_m, angle), [0.0; 2]);
+            let (position_m, asked_n) = if refused { (bad, [-1e4, 0.0]) } else { good };
+            let command = bench.tick_asking(position_m, asked_n);
             if refused {
                 assert_eq!(command.mode, Mode::Handover);
-                let off = [0, 1].map(|k| command.force_n[k] - last_n[k]);
-                assert!(length(off) < 1e-3, "{command:?} after {last_n:?}");
+                let off_n = apart(command.force_n, last_n);
+                assert!(off_n < 1e-3, "{command:?} after {last_n:?}");
                 wild += 1;
             }
             last_n = command.force_n;

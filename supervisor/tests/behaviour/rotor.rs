@@ -1,10 +1,13 @@
 //! Both ends of one rotor: who is informed of what, and records that belong together.
 
 use supervisor::{
-    Command, Config, Events, Mode, PlanePositions, RotorCommand, RotorSupervisor, Sample, Shaft,
-    Stamp, Status, Supervisor,
+    Command, Config, Events, Mode, RotorCommand, RotorSupervisor, Sample, Shaft, Status, Supervisor,
 };
-use test_support::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample, shaft};
+use test_support::records::written;
+use test_support::rig::{
+    RADIUS_M, WHIRL_STEP, all_at, asking, config, config_with, new_rotor, on_circle, quiet, sample,
+    sample_with, shaft, ticks_of,
+};
 
 /// Ticks to the wall, and of whirl on it.
 const OUT: u32 = 40;
@@ -28,25 +31,27 @@ fn led(tick: u32, from: u32) -> [f32; 2] {
     on_circle(share * RADIUS_M, WHIRL_STEP * turns as f32)
 }
 
+/// A sample of a sensor that does not stand still to the last digit.
+fn noisy(tick: u32, position_m: [f32; 2]) -> Sample {
+    sample(tick, position_m.map(|x| x + quiet(tick)[0]))
+}
+
+/// A plane of a rotor that knows nothing of the other.
+fn alone(shaft: &Shaft, end: usize, config: &Config) -> Supervisor<RECORD> {
+    Supervisor::new(&shaft.plane(end, config)).unwrap()
+}
+
 /// Ticks of both ends, each led from a tick on; `None`: it stays in the middle.
 fn run(
     rotor: &mut RotorSupervisor<RECORD>,
     ticks: std::ops::Range<u32>,
     from: [Option<u32>; 2],
 ) -> Vec<RotorCommand> {
-    ticks
-        .map(|i| {
-            let at = |from: Option<u32>| from.map_or([0.0; 2], |from| led(i, from));
-            // No sensor stands still to the last digit.
-            let noise = 1e-6 * (i % 3) as f32;
-            let samples = from.map(|from| sample(i, at(from).map(|x| x + noise)));
-            rotor.tick(&samples)
-        })
-        .collect()
-}
-
-fn rotor(config: &Config) -> RotorSupervisor<RECORD> {
-    RotorSupervisor::new(&shaft(config), &[*config; 2]).unwrap()
+    let tick = |i| {
+        let at = |from: Option<u32>| from.map_or([0.0; 2], |from| led(i, from));
+        rotor.tick(&from.map(|from| noisy(i, at(from))))
+    };
+    ticks.map(tick).collect()
 }
 
 fn engaged_at(commands: &[RotorCommand], end: usize) -> Option<usize> {
@@ -58,23 +63,16 @@ fn engaged_at(commands: &[RotorCommand], end: usize) -> Option<usize> {
 /// is there at once.
 #[test]
 fn two_halves_are_a_tick() {
-    let record_of = |rotor: &RotorSupervisor<RECORD>, end: usize| -> Vec<u8> {
-        let record = rotor.record(end).expect("frozen");
-        let stamp = Stamp::default();
-        let sections = (0..).map_while(|i| record.section(i, &stamp));
-        sections.flat_map(|mut s| s.seal().to_vec()).collect()
-    };
-    let [mut whole, mut halves] = [(); 2].map(|()| rotor(&config()));
+    let record_of = |rotor: &RotorSupervisor<RECORD>, end| written(&rotor.record(end).unwrap());
+    let [mut whole, mut halves] = [(); 2].map(|()| new_rotor(&config()));
     let (mut engaged, mut frozen) = (false, 0);
     for i in 0..1200 {
         // One end is led out at two times, the other in between, and both are unlike.
-        let noise = 1e-6 * (i % 3) as f32;
         let at = |from: [u32; 2]| {
             let from = from.into_iter().rev().find(|from| i >= *from);
             from.map_or([0.0; 2], |from| led(i, from))
         };
-        let ends = [at([20, 600]), at([300, 630])];
-        let mut samples = ends.map(|at| sample(i, at.map(|x| x + noise)));
+        let mut samples = [at([20, 600]), at([300, 630])].map(|at| noisy(i, at));
         samples[1].position_m[0] += 3e-6;
         if i == 500 {
             samples[1].position_m[1] = f32::NAN;
@@ -83,10 +81,8 @@ fn two_halves_are_a_tick() {
         let half = halves.tick_first(&samples[0]);
         let later = halves.tick_second(&half, &samples[1]);
         assert_eq!(bits(&later), bits(&command), "tick {i}");
-        let at_once = Command {
-            events: command.planes[0].events - Events::RECORD_FROZEN,
-            ..command.planes[0]
-        };
+        let mut at_once = command.planes[0];
+        at_once.events -= Events::RECORD_FROZEN;
         assert_eq!(half.command, at_once, "tick {i}");
         engaged |= command.planes[1].mode.is_engaged();
         if whole.record(1).is_some() {
@@ -112,12 +108,7 @@ fn bits(command: &RotorCommand) -> String {
         let forces = [c.force_n, c.own_n].map(|f| f.map(f32::to_bits));
         (forces, c.severity.to_bits(), *c)
     };
-    format!(
-        "{:?} {:?} {}",
-        command.planes.each_ref().map(of),
-        command.other_engaged,
-        command.coast_down
-    )
+    format!("{:?} {command:?}", command.planes.each_ref().map(of))
 }
 
 /// From the tick on at which one end engages the other's firmware is informed, and its supervisor stays out of it.
@@ -126,7 +117,7 @@ fn an_engagement_is_told_to_the_other_end() {
     for end in [0, 1] {
         let mut from = [None; 2];
         from[end] = Some(20);
-        let mut rotor = rotor(&config());
+        let mut rotor = new_rotor(&config());
         let commands = run(&mut rotor, 0..200, from);
         let engaged = engaged_at(&commands, end).unwrap();
         assert!((20..20 + OUT as usize).contains(&engaged), "{engaged}");
@@ -148,17 +139,13 @@ fn beyond_its_turn_only_backward_whirl_is_acted_on() {
     let late_s = (0.5 + config.delay_samples) * config.sample_period_s + config.amplifier_lag_s;
     let wall = 20 + OUT as usize;
     let engaged_at_turn = |turn_rad: f32| {
-        let mut rotor = rotor(&config);
-        let commands: Vec<RotorCommand> = (0..200)
-            .map(|i| {
-                let noise = 1e-6 * (i % 3) as f32;
-                let one = Sample {
-                    spin_rad_s: turn_rad / late_s / 0.8,
-                    ..sample(i, led(i, 20).map(|x| x + noise))
-                };
-                rotor.tick(&[one; 2])
-            })
-            .collect();
+        let mut rotor = new_rotor(&config);
+        let commands = (0..200).map(|i| {
+            let mut now = noisy(i, led(i, 20));
+            now.spin_rad_s = turn_rad / late_s / 0.8;
+            rotor.tick(&[now; 2])
+        });
+        let commands: Vec<RotorCommand> = commands.collect();
         engaged_at(&commands, 0).unwrap()
     };
     for turn_rad in [0.1, 0.6, 1.2] {
@@ -167,10 +154,8 @@ fn beyond_its_turn_only_backward_whirl_is_acted_on() {
     // The last by more than a radian a tick.
     for turn_rad in [1.3, 2.0, 8.0] {
         let engaged = engaged_at_turn(turn_rad);
-        assert!(
-            engaged > wall + 1 && engaged < wall + ON_WALL as usize,
-            "{turn_rad}: {engaged}"
-        );
+        let late = wall + 2..wall + ON_WALL as usize;
+        assert!(late.contains(&engaged), "{turn_rad}: {engaged}");
     }
 }
 
@@ -179,7 +164,7 @@ fn beyond_its_turn_only_backward_whirl_is_acted_on() {
 /// Requirement: SR-30
 #[test]
 fn records_of_one_event_are_of_the_same_ticks() {
-    let mut rotor = rotor(&config());
+    let mut rotor = new_rotor(&config());
     let late = 20 + 3 * RECORD as u32 / 2;
     let mut read: Vec<(usize, Vec<u32>)> = Vec::new();
     let mut over = false;
@@ -212,7 +197,7 @@ fn records_of_one_event_are_of_the_same_ticks() {
 /// An engagement without a touch leaves no record: nobody waits for one, and nobody is informed of it any more.
 #[test]
 fn an_engagement_without_a_touch_holds_nothing_up() {
-    let mut rotor = rotor(&config());
+    let mut rotor = new_rotor(&config());
     let mut read = Vec::new();
     let (mut engaged, mut informed) = (false, false);
     for i in 0..1200_u32 {
@@ -222,10 +207,8 @@ fn an_engagement_without_a_touch_holds_nothing_up() {
             Some(i) => 0.9 * (1.0 - (i - 36) as f32 / 60.0).max(0.0),
             None => 0.0,
         };
-        let noise = 1e-6 * (i % 3) as f32;
-        let first = [1.95e-4 * near + noise, noise];
-        let second = led(i, 600).map(|x| x + noise);
-        let command = rotor.tick(&[sample(i, first), sample(i, second)]);
+        let samples = [[1.95e-4 * near, 0.0], led(i, 600)].map(|at| noisy(i, at));
+        let command = rotor.tick(&samples);
         engaged |= command.planes[0].events.contains(Events::ENGAGED);
         informed = command.other_engaged[1];
         if i == 590 {
@@ -242,14 +225,11 @@ fn an_engagement_without_a_touch_holds_nothing_up() {
 /// Requirement: SR-27
 #[test]
 fn a_request_to_coast_down_is_of_the_machine() {
-    let impatient = Config {
-        coast_down_s: 1e-3,
-        ..config()
-    };
-    let mut rotor = rotor(&impatient);
+    let impatient = config_with(|c| c.coast_down_s = 1e-3);
+    let mut rotor = new_rotor(&impatient);
     let commands = run(&mut rotor, 0..400, [None, Some(20)]);
-    let asked = |c: &RotorCommand| c.planes[1].events.contains(Events::COAST_DOWN);
-    let first = commands.iter().position(asked).unwrap();
+    let second: Vec<Command> = commands.iter().map(|c| c.planes[1]).collect();
+    let first = ticks_of(&second, Events::COAST_DOWN)[0];
     for (i, command) in commands.iter().enumerate() {
         assert_eq!(command.coast_down, i >= first, "tick {i}");
     }
@@ -259,24 +239,15 @@ fn a_request_to_coast_down_is_of_the_machine() {
 /// what is dearest for one at the same tick.
 #[test]
 fn half_a_turn_turns_the_commands() {
-    let mut rotor = rotor(&config());
+    let mut rotor = new_rotor(&config());
     for i in 0..400 {
         let levitation_n = led(i, 25).map(|x| -2e6 * x);
-        let sample = Sample {
-            levitation_n,
-            ..sample(i, led(i, 20))
-        };
-        let turned = Sample {
-            position_m: sample.position_m.map(|x| -x),
-            levitation_n: levitation_n.map(|x| -x),
-            ..sample
-        };
+        let sample = asking(i, led(i, 20), levitation_n);
+        let turned = asking(i, led(i, 20).map(|x| -x), levitation_n.map(|x| -x));
         let [first, second] = rotor.tick(&[sample, turned]).planes;
         assert_eq!(first.force_n, second.force_n.map(|x| -x), "tick {i}");
-        assert_eq!(
-            (first.mode, first.events, first.limits, first.severity),
-            (second.mode, second.events, second.limits, second.severity)
-        );
+        let of = |c: Command| (c.mode, c.events, c.limits, c.severity);
+        assert_eq!(of(first), of(second));
     }
 }
 
@@ -290,33 +261,24 @@ fn nutating(spin_rad_s: f32, sense: f32, mut tick: impl FnMut(&[Sample; 2])) {
         let radius = 0.6 * config.clearance_m * (i as f32 / 60.0).min(1.0);
         let angle = (rate * config.sample_period_s * i as f32) % std::f32::consts::TAU;
         let at = [radius * angle.cos(), radius * angle.sin()];
-        let of = |position_m: [f32; 2]| Sample {
-            spin_rad_s,
-            ..sample(i, position_m)
-        };
+        let of = |position_m| sample_with(i, position_m, |s| s.spin_rad_s = spin_rad_s);
         tick(&[of(at.map(|x| -x)), of(at)]);
     }
 }
 
 fn free() -> Config {
-    Config {
-        stiffness_n_m: 0.0,
-        damping_n_s_m: 0.0,
-        ..config()
-    }
+    config_with(|c| (c.stiffness_n_m, c.damping_n_s_m) = (0.0, 0.0))
 }
 
 /// Requirement: SR-10
 #[test]
 fn free_nutation_is_no_approach() {
     let engages = |spin: f32, sense: f32| {
-        let mut rotor = rotor(&free());
+        let mut rotor = new_rotor(&free());
         let mut engaged = [false; 2];
         nutating(spin, sense, |samples| {
-            let commands = rotor.tick(samples).planes;
-            for (engaged, command) in engaged.iter_mut().zip(commands) {
-                *engaged |= command.mode != Mode::Levitated;
-            }
+            let planes = rotor.tick(samples).planes;
+            engaged = [0, 1].map(|end| engaged[end] || planes[end].mode != Mode::Levitated);
         });
         engaged
     };
@@ -329,7 +291,7 @@ fn free_nutation_is_no_approach() {
     // A plane alone takes the first for an approach, too.
     let config = free();
     let shaft = shaft(&config);
-    let mut alone = Supervisor::<RECORD>::new(&shaft.plane(0, &config)).unwrap();
+    let mut alone = alone(&shaft, 0, &config);
     let mut engaged = false;
     nutating(3500.0, 1.0, |[sample, _]| {
         engaged |= alone.tick(sample).mode != Mode::Levitated;
@@ -342,14 +304,11 @@ fn free_nutation_is_no_approach() {
 fn without_spin_there_is_no_nutation() {
     let config = free();
     let shaft = shaft(&config);
-    let mut rotor = rotor(&config);
-    let mut alone =
-        [0, 1].map(|end| Supervisor::<RECORD>::new(&shaft.plane(end, &config)).unwrap());
+    let mut rotor = new_rotor(&config);
+    let mut alone = [0, 1].map(|end| alone(&shaft, end, &config));
     nutating(3500.0, 1.0, |samples| {
-        let blind = samples.map(|sample| Sample {
-            status: Status::BEARING_ON,
-            ..sample
-        });
+        let mut blind = *samples;
+        blind.iter_mut().for_each(|s| s.status = Status::BEARING_ON);
         let commands = rotor.tick(&blind).planes;
         for ((command, alone), sample) in commands.iter().zip(&mut alone).zip(&blind) {
             assert_eq!(*command, alone.tick(sample));
@@ -362,16 +321,11 @@ fn without_spin_there_is_no_nutation() {
 #[test]
 fn a_push_by_the_other_magnet_is_known_before_it_is_seen() {
     // Both planes on one side of the centre of mass; forces that act at once.
-    let at = |place_m: f32| PlanePositions {
-        retainer_m: place_m,
-        sensor_m: place_m,
-        magnet_m: place_m,
-    };
     let shaft = Shaft {
         mass_kg: 20.0,
         transverse_inertia_kg_m2: 2.0,
         polar_inertia_kg_m2: 0.0,
-        places: [at(0.05), at(0.25)],
+        places: [all_at(0.05), all_at(0.25)],
     };
     let with = |force_max_n: f32| Config {
         force_max_n,
@@ -383,7 +337,7 @@ fn a_push_by_the_other_magnet_is_known_before_it_is_seen() {
     };
     let configs = [with(500.0), with(2000.0)];
     let mut rotor = RotorSupervisor::<RECORD>::new(&shaft, &configs).unwrap();
-    let mut alone = Supervisor::<RECORD>::new(&shaft.plane(0, &configs[0])).unwrap();
+    let mut alone = alone(&shaft, 0, &configs[0]);
     // Acceleration of each end per force at the second.
     let magnet_m = shaft.places[1].magnet_m;
     let per_kg = shaft.places.map(|place| {
@@ -410,9 +364,7 @@ fn a_push_by_the_other_magnet_is_known_before_it_is_seen() {
             speed_m_s[end] += gained;
         }
     }
-    let [Some(known), Some(seen)] = engaged else {
-        panic!("{engaged:?}");
-    };
+    let [known, seen] = engaged.map(Option::unwrap);
     assert!((pushed_at + 1..=pushed_at + 2).contains(&known), "{known}");
     assert!(seen > known + 5, "{known} {seen}");
 }

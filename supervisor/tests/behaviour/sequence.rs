@@ -1,9 +1,9 @@
 //! Numbers of samples: missed, repeated, in the wrong order, and gaps that cannot be made up for.
 
 use super::refusals::ticks_to_fault;
-use supervisor::{Command, Events, Limits, Mode, RejectReason, Sample, Supervisor};
+use supervisor::{Events, Limits, Mode, RejectReason, Supervisor};
 use test_support::bench::{Bench, WHIRL_STEP};
-use test_support::rig::{RADIUS_M, config, length, on_circle, sample};
+use test_support::rig::{RADIUS_M, apart, asking, config, on_circle, sample};
 
 /// A repeated number is refused in the same tick and a fault in the third, wherever the samples lie.
 /// Requirement: SR-14
@@ -42,15 +42,9 @@ fn an_older_number_is_no_new_sample() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
     let mut refused = 0;
     for i in 0..200_u32 {
-        let number = match i {
-            100 => 101,
-            101 => 100,
-            other => other,
-        };
-        supervisor.tick(&sample(
-            number,
-            on_circle(RADIUS_M, WHIRL_STEP * number as f32),
-        ));
+        let number = if i / 2 == 50 { i ^ 1 } else { i };
+        let position_m = on_circle(RADIUS_M, WHIRL_STEP * number as f32);
+        supervisor.tick(&sample(number, position_m));
         refused += u32::from(supervisor.report().refusal == RejectReason::Dropout);
     }
     assert_eq!(refused, 1);
@@ -84,21 +78,15 @@ fn missed_ticks_are_made_up_for() {
     for missed in 1..=4_u32 {
         let run = |skips: bool| {
             let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-            let mut last = Command::default();
-            for i in 0..14_u32 {
-                if skips && (6..6 + missed).contains(&i) {
-                    continue;
-                }
-                // 0.16 m/s along x: too fast for the way that is left.
-                let x = 8e-6 * i as f32 + 2e-5;
-                last = supervisor.tick(&sample(i, [x, 1e-8 * i as f32]));
-            }
-            last
+            let ticks = (0..14_u32).filter(|i| !(skips && (6..6 + missed).contains(i)));
+            // 0.16 m/s along x: too fast for the way that is left.
+            let at = |i: u32| sample(i, [8e-6 * i as f32 + 2e-5, 1e-8 * i as f32]);
+            ticks.map(|i| supervisor.tick(&at(i))).last().unwrap()
         };
         let (with, without) = (run(false), run(true));
         assert_eq!(with.mode, without.mode);
-        let off = [0, 1].map(|k| with.force_n[k] - without.force_n[k]);
-        assert!(length(off) < 100.0, "{missed}: {off:?}");
+        let off_n = apart(with.force_n, without.force_n);
+        assert!(off_n < 100.0, "{missed}: {off_n}");
     }
     // After more than that the sample before is no help: whatever the jump, the estimate starts there.
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
@@ -119,10 +107,8 @@ fn repeated_gaps_do_not_engage() {
         let mut supervisor = Supervisor::<16>::new(&config()).unwrap();
         for i in 0..3000_u32 {
             let noise = |k: u32| 1e-6 * ((f64::from(i + k) * 0.618_034).fract() as f32 - 0.5);
-            let command = supervisor.tick(&Sample {
-                levitation_n: [100.0, 0.0],
-                ..sample(i + i / good * missed, [noise(0), noise(1000)])
-            });
+            let (sequence, at_m) = (i + i / good * missed, [noise(0), noise(1000)]);
+            let command = supervisor.tick(&asking(sequence, at_m, [100.0, 0.0]));
             assert_eq!(command.mode, Mode::Levitated, "{missed} after {good}");
         }
     }
@@ -136,10 +122,7 @@ fn a_dropout_may_or_may_not_use_up_a_number() {
         for i in 0..6 {
             supervisor.tick(&sample(i, [1e-6 * i as f32, 0.0]));
         }
-        let repeated = Sample {
-            sequence: 5,
-            ..sample(0, [5e-6, 0.0])
-        };
+        let repeated = sample(5, [5e-6, 0.0]);
         assert!(supervisor.tick(&repeated).events.contains(Events::SEQUENCE));
         let command = supervisor.tick(&sample(next, [7e-6, 0.0]));
         assert!(!command.events.contains(Events::SEQUENCE));
@@ -150,9 +133,9 @@ fn a_dropout_may_or_may_not_use_up_a_number() {
 #[test]
 fn gaps_far_apart_are_not_in_a_row() {
     let (mut bench, mut angle) = Bench::whirl(&config());
-    for (gap, refused) in [(6, false), (0, false), (6, false), (6, true)] {
+    let rows = [(6, 1, false), (0, 50, false), (6, 1, false), (6, 1, true)];
+    for (gap, ticks, refused) in rows {
         bench.sequence += gap;
-        let ticks = if gap == 0 { 50 } else { 1 };
         for _ in 0..ticks {
             angle += WHIRL_STEP;
             let command = bench.tick(on_circle(RADIUS_M, angle));

@@ -1,23 +1,29 @@
 //! What firmware needs around the tick: live reconfiguration, shadow, late commands, counters, expiry.
 
 use supervisor::{
-    CommandWatchdog, Config, Core, Events, IntegratorHint, Mode, Prepared, Sample, Status,
-    Supervisor,
+    CommandWatchdog, Config, Core, Events, IntegratorHint, Mode, Prepared, Status, Supervisor,
 };
-use test_support::rig::{config, length, on_circle, sample, whirl};
+use test_support::rig::{
+    apart, asking, config, config_with, length, new_supervisor, on_circle, sample, sample_with,
+    whirl,
+};
+
+fn larger_cap() -> Config {
+    config_with(|c| (c.force_max_n, c.axis_force_max_n) = (1500.0, 1500.0))
+}
+
+/// Outwards and round, onto the wall.
+fn spiral(i: u32) -> [f32; 2] {
+    on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32)
+}
 
 /// What is known of the rotor survives a change of every unit: there and back again, a tick in between, and the
 /// supervisor engages at the same tick as without.
 /// Requirement: SR-29
 #[test]
 fn reconfiguration_keeps_what_is_known_of_the_rotor() {
-    let other = Config {
-        mass_kg: 12.0,
-        clearance_m: 2.5e-4,
-        force_max_n: 1500.0,
-        axis_force_max_n: 1500.0,
-        ..config()
-    };
+    let mut other = larger_cap();
+    (other.mass_kg, other.clearance_m) = (12.0, 2.5e-4);
     let engaged_after = |change: bool| {
         let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
         let mut first = None;
@@ -32,9 +38,8 @@ fn reconfiguration_keeps_what_is_known_of_the_rotor() {
             let command = supervisor.tick(&sample(i, [2.0 * t * t, 1e-6 * (i % 3) as f32]));
             let changed = change && (i == 60 || i == 61);
             assert_eq!(command.events.contains(Events::RECONFIGURED), changed);
-            if first.is_none() && command.mode != Mode::Levitated {
-                first = Some(i);
-            }
+            let engaged = command.mode != Mode::Levitated;
+            first = first.or(engaged.then_some(i));
         }
         first.expect("it is on its way to the wall")
     };
@@ -48,24 +53,16 @@ fn reconfiguration_keeps_what_is_known_of_the_rotor() {
 #[test]
 fn reconfiguration_in_a_whirl_goes_on_braking() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    let before = *whirl(&mut supervisor, 0..400, Status::empty())
-        .last()
-        .unwrap();
+    let before = whirl(&mut supervisor, 0..400, Status::empty())[399];
     assert_eq!(before.mode, Mode::BackwardWhirl);
-    let with_larger_cap = Config {
-        force_max_n: 1500.0,
-        axis_force_max_n: 1500.0,
-        ..config()
-    };
-    supervisor.reconfigure(&with_larger_cap).unwrap();
+    supervisor.reconfigure(&larger_cap()).unwrap();
     let after = whirl(&mut supervisor, 400..410, Status::empty());
     assert!(after[0].events.contains(Events::RECONFIGURED));
     for command in after {
         assert_eq!(command.mode, Mode::BackwardWhirl);
-        assert!(
-            length(command.force_n) > 990.0 && length(command.force_n) <= 1500.0 * (1.0 + 2e-7),
-            "{command:?}"
-        );
+        let force_n = length(command.force_n);
+        let caps = 990.0..=1500.0 * (1.0 + 2e-7);
+        assert!(caps.contains(&force_n), "{command:?}");
     }
 }
 
@@ -74,35 +71,23 @@ fn reconfiguration_in_a_whirl_goes_on_braking() {
 /// Requirement: SR-09
 #[test]
 fn shadow_computes_and_does_not_act() {
-    let (mut acting, mut shadow) = (
-        Supervisor::<64>::new(&config()).unwrap(),
-        Supervisor::<64>::new(&config()).unwrap(),
-    );
+    let (mut acting, mut shadow) = (new_supervisor(), new_supervisor());
     let mut modes = Vec::new();
     for i in 0..400_u32 {
         let levitation_n = [0.25 * i as f32, -3.0];
-        let at = on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32);
-        let s = Sample {
-            levitation_n,
-            ..sample(i, at)
-        };
+        let mut s = asking(i, spiral(i), levitation_n);
         let live = acting.tick(&s);
-        let seen = shadow.tick(&Sample {
-            status: s.status | Status::SHADOW,
-            ..s
-        });
-        assert_eq!(
-            seen.force_n.map(f32::to_bits),
-            levitation_n.map(f32::to_bits)
-        );
+        s.status |= Status::SHADOW;
+        let seen = shadow.tick(&s);
+        let bits = [seen.force_n, levitation_n].map(|n| n.map(f32::to_bits));
+        assert_eq!(bits[0], bits[1]);
         assert_eq!(seen.integrator, IntegratorHint::Run);
         assert_eq!(live.own_n, live.force_n);
         modes.push(seen.mode);
         // The estimate differs by the force that acts, which a contact does not wait for.
         if i > 200 {
             assert_eq!(seen.mode, live.mode);
-            let apart = [seen.own_n[0] - live.own_n[0], seen.own_n[1] - live.own_n[1]];
-            assert!(length(apart) < 150.0, "{seen:?} {live:?}");
+            assert!(apart(seen.own_n, live.own_n) < 150.0, "{seen:?} {live:?}");
         }
     }
     assert!(modes.contains(&Mode::BackwardWhirl));
@@ -118,10 +103,8 @@ fn in_shadow_of_a_bearing_that_is_off_the_integrator_holds() {
     ] {
         let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
         for i in 0..20 {
-            let command = supervisor.tick(&Sample {
-                status,
-                ..sample(i, [0.0, -2e-4])
-            });
+            let off = sample_with(i, [0.0, -2e-4], |s| s.status = status);
+            let command = supervisor.tick(&off);
             assert_eq!(command.integrator, hint, "{status:?}");
         }
     }
@@ -134,8 +117,7 @@ fn the_core_is_the_supervisor_per_unit() {
     let mut core = Core::<f32, 64>::new(&Prepared::new(&config()).unwrap());
     let scaling = config().scaling();
     for i in 0..600_u32 {
-        let at = on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32);
-        let s = sample(i, at);
+        let s = sample(i, spiral(i));
         let own = core.tick(&scaling.sample(&s));
         assert_eq!(supervisor.tick(&s), scaling.command(&own), "tick {i}");
     }
@@ -166,9 +148,8 @@ fn commands_expire() {
 fn a_full_queue_of_events_keeps_the_first_and_tells_of_the_loss() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
     let late = |i: u32| {
-        let mut now = sample(i, [1e-7 * (i % 3) as f32, 2e-7 * (i % 5) as f32]);
-        now.status |= Status::LATE;
-        now
+        let position_m = [1e-7 * (i % 3) as f32, 2e-7 * (i % 5) as f32];
+        sample_with(i, position_m, |now| now.status |= Status::LATE)
     };
     for i in 0..40 {
         assert_eq!(supervisor.tick(&late(i)).events, Events::LATE);
@@ -191,31 +172,22 @@ fn a_full_queue_of_events_keeps_the_first_and_tells_of_the_loss() {
 #[test]
 fn a_late_command_leaves_its_tick_to_the_one_before() {
     let levitation = |i: u32| [10.0 * (i % 7) as f32, -20.0 * (i % 5) as f32];
-    let (mut informed, mut commanded) = (
-        Supervisor::<64>::new(&config()).unwrap(),
-        Supervisor::<64>::new(&config()).unwrap(),
-    );
-    let mut uninformed = informed.clone();
+    let [mut informed, mut uninformed, mut commanded] = [(); 3].map(|()| new_supervisor());
     let mut differs = false;
     for i in 0..400_u32 {
-        let mut s = sample(
-            i,
-            on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32),
-        );
         // In shadow the commands are the levitation controller's.
-        s.status |= Status::SHADOW;
-        s.levitation_n = levitation(i);
-        let late = i % 10 == 9;
-        let without = uninformed.tick(&s);
-        let as_if = Sample {
-            levitation_n: levitation(if i % 10 == 8 { i - 1 } else { i }),
-            ..s
+        let seen = |asked: u32, status: Status| {
+            sample_with(i, spiral(i), |s| {
+                s.status |= Status::SHADOW | status;
+                s.levitation_n = levitation(asked);
+            })
         };
-        let b = commanded.tick(&as_if);
-        if late {
-            s.status |= Status::LATE;
-        }
-        let a = informed.tick(&s);
+        let late = i % 10 == 9;
+        let without = uninformed.tick(&seen(i, Status::empty()));
+        let as_if = if i % 10 == 8 { i - 1 } else { i };
+        let b = commanded.tick(&seen(as_if, Status::empty()));
+        let status = if late { Status::LATE } else { Status::empty() };
+        let a = informed.tick(&seen(i, status));
         assert_eq!(a.events.contains(Events::LATE), late);
         assert_eq!(a.own_n, b.own_n, "tick {i}");
         assert_eq!(a.mode, b.mode);

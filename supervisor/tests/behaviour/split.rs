@@ -1,9 +1,11 @@
 //! A supervisor in two halves: the same as the whole, and whatever comes between what.
 
-use supervisor::{Config, Core, Prepared, Q, Report, RotorSupervisor, Supervisor};
+use supervisor::{Core, Prepared, Q, Report, Supervisor};
 use test_support::in_numbers;
 use test_support::records::{taken, written};
-use test_support::rig::{LANDING_TICKS as LANDING, config, landing as way, sample, shaft};
+use test_support::rig::{
+    LANDING_TICKS as LANDING, config, config_with, landing as way, new_rotor, quiet, sample,
+};
 
 const RECORD: usize = 64;
 
@@ -24,10 +26,7 @@ fn halves_do_what_the_whole_does() {
     let (mut reports, mut happened) = (vec![whole.report()], false);
     for i in 0..3 * LANDING {
         if i == 1000 {
-            let other = Config {
-                clearance_m: 1.98e-4,
-                ..config()
-            };
+            let other = config_with(|c| c.clearance_m = 1.98e-4);
             whole.reconfigure(&other).unwrap();
             ticker.reconfigure(&other).unwrap();
             reports.push(whole.report());
@@ -42,9 +41,7 @@ fn halves_do_what_the_whole_does() {
         happened = !command.events.is_empty();
         assert!(is_in_time(&reports, published.report(), after), "tick {i}");
         taken(&mut reader, &mut events, &mut records);
-        while let Some(event) = whole.next_event() {
-            of_whole.0.push(event);
-        }
+        of_whole.0.extend(std::iter::from_fn(|| whole.next_event()));
         if let Some(record) = whole.record().map(|record| written(&record)) {
             of_whole.1.push(record);
             whole.rearm();
@@ -83,25 +80,21 @@ fn a_whole_goes_on_where_its_halves_left_off() {
 /// Requirement: SR-31
 #[test]
 fn halves_of_a_rotor_do_what_the_whole_does() {
-    let mut whole = RotorSupervisor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut whole = new_rotor(&config());
     let mut parted = whole.clone();
     let (mut ticker, mut reader) = parted.split();
     let mut files = (Vec::new(), Vec::new());
     let mut events = (Vec::new(), Vec::new());
     let mut reports = [0, 1].map(|end| vec![whole.plane(end).report()]);
     for i in 0..2 * LANDING {
-        let quiet = sample(i, [1e-6 * (i % 3) as f32; 2]);
-        let samples = [sample(i, way(i)), quiet];
+        let samples = [sample(i, way(i)), sample(i, quiet(i))];
         assert_eq!(ticker.tick(&samples), whole.tick(&samples), "tick {i}");
         for end in [0, 1] {
             reports[end].push(whole.plane(end).report());
             let published = reader.published(end).report();
             assert!(is_in_time(&reports[end], published, false), "tick {i}");
-            events
-                .0
-                .extend(std::iter::from_fn(|| reader.next_event(end)));
-            let more = std::iter::from_fn(|| whole.plane(end).next_event());
-            events.1.extend(more);
+            (events.0).extend(std::iter::from_fn(|| reader.next_event(end)));
+            (events.1).extend(std::iter::from_fn(|| whole.plane(end).next_event()));
         }
         let both = [0, 1].map(|end| reader.record(end).map(|record| written(&record)));
         if let [Some(first), Some(second)] = both {

@@ -83,20 +83,29 @@ fn coordinates_may_stick_one_after_the_other() {
     }
 }
 
+/// No sample of a reading is refused.
+fn is_left_alone(ticks: u32, at: impl Fn(u32) -> [f32; 2]) {
+    let mut bench = Bench::new(&config());
+    for i in 0..ticks {
+        let refused = bench.tick(at(i)).limits.contains(Limits::SAMPLE_REFUSED);
+        let why = bench.supervisor.report().refusal;
+        assert_eq!(
+            (refused, why),
+            (false, RejectReason::None),
+            "{:?}: {i}",
+            at(i)
+        );
+    }
+}
+
 /// A sensor that rightly stands still is left alone: a rotor at rest in the middle, on the wall under a
 /// force, or with a coarse converter.
 /// Requirement: SR-15
 #[test]
 fn a_rotor_at_rest_is_no_stuck_sensor() {
-    for position_m in [[0.0, 0.0], [1e-4, -5e-5], [2.01e-4, 0.0]] {
-        let mut bench = Bench::new(&config());
-        for i in 0..2000_u32 {
-            // One step of the converter now and then.
-            let step = if i / 300 % 2 == 0 { 0.0 } else { 1e-6 };
-            bench.tick([position_m[0] + step, position_m[1]]);
-            let report = bench.supervisor.report();
-            assert_eq!(report.refusal, RejectReason::None, "{position_m:?} at {i}");
-        }
+    for [x, y] in [[0.0, 0.0], [1e-4, -5e-5], [2.01e-4, 0.0]] {
+        // One step of the converter now and then.
+        is_left_alone(2000, |i| [x + 1e-6 * (i / 300 % 2) as f32, y]);
     }
 }
 
@@ -105,16 +114,8 @@ fn a_rotor_at_rest_is_no_stuck_sensor() {
 #[test]
 fn a_toggling_coordinate_is_not_stuck() {
     for pattern in [[0, 1, 1, 2], [0, 1, 1, 1], [1, 1, 2, 0], [0, 1, 0, 1]] {
-        let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-        for i in 0..3000_u32 {
-            let step = |k: u32| 1e-6 * pattern[(k % 4) as usize] as f32;
-            let command = supervisor.tick(&sample(i, [step(i), step(i / 2 + 1)]));
-            assert!(
-                !command.limits.contains(Limits::SAMPLE_REFUSED),
-                "{pattern:?} tick {i}"
-            );
-            assert_eq!(supervisor.report().refusal, RejectReason::None);
-        }
+        let step = |k: u32| 1e-6 * pattern[(k % 4) as usize] as f32;
+        is_left_alone(3000, |i| [step(i), step(i / 2 + 1)]);
     }
 }
 
@@ -140,9 +141,9 @@ fn a_change_beside_a_bad_coordinate_is_a_change() {
     for still in 0..2 {
         let mut bench = Bench::new(&config());
         let mut position_m = [0.0; 2];
-        let on = |by: [f32; 2], position_m: &mut [f32; 2]| {
-            *position_m = [position_m[0] + by[0], position_m[1] + by[1]];
-            *position_m
+        let on = |by: [f32; 2], from: &mut [f32; 2]| {
+            *from = [from[0] + by[0], from[1] + by[1]];
+            *from
         };
         for _ in 0..50 {
             bench.tick(on([2e-6; 2], &mut position_m));
@@ -195,21 +196,15 @@ fn a_stuck_sensor_is_not_believed_before_it_changes() {
     let good_after = |read_m: &dyn Fn([f32; 2], u32) -> [f32; 2]| {
         let (mut bench, angle) = Bench::whirl(&config());
         let last = on_circle(RADIUS_M, angle);
-        for _ in 0..500 {
-            bench.tick(last);
-        }
+        bench.ticks(500, last);
         assert_eq!(bench.supervisor.mode(), Mode::SensorFault);
         assert_eq!(bench.supervisor.report().fault, RejectReason::Stuck);
         let mut ticks = 1..100;
         ticks.find(|i| bench.tick(read_m(last, *i)).mode != Mode::SensorFault)
     };
     // x changes at 5, y at 8.
-    let one_by_one = good_after(&|[x, y], i| {
-        [
-            x - if i < 5 { 0.0 } else { 1e-7 },
-            y - if i < 8 { 0.0 } else { 1e-7 },
-        ]
-    });
+    let step_m = |i: u32, at: u32| if i < at { 0.0 } else { 1e-7 };
+    let one_by_one = good_after(&|[x, y], i| [x - step_m(i, 5), y - step_m(i, 8)]);
     assert_eq!(one_by_one, Some(8 + 9), "ten from the second change on");
     // At rest somewhere else: one sample that is too far from the frozen one, and ten good ones at most.
     let at_rest = good_after(&|_, _| [-RADIUS_M, 3e-6]);

@@ -1,7 +1,7 @@
 //! A supervisor on a rotor that whirls or is led by the hand.
 
-use crate::rig::{RADIUS_M, on_circle, sample};
-use supervisor::{Command, Config, Limits, Mode, Supervisor};
+use crate::rig::{RADIUS_M, on_circle, sample, sample_with};
+use supervisor::{Command, Config, Limits, Mode, Sample, Supervisor};
 
 /// A supervisor with its counter of samples.
 pub struct Bench {
@@ -35,6 +35,25 @@ impl Bench {
     /// A tick without a new number.
     pub fn tick_again(&mut self, position_m: [f32; 2]) -> Command {
         self.supervisor.tick(&sample(self.sequence, position_m))
+    }
+
+    /// Ticks of the same reading.
+    pub fn ticks(&mut self, ticks: u32, position_m: [f32; 2]) {
+        for _ in 0..ticks {
+            self.tick(position_m);
+        }
+    }
+
+    /// A tick under a levitation controller that asks for a force.
+    pub fn tick_asking(&mut self, position_m: [f32; 2], levitation_n: [f32; 2]) -> Command {
+        self.tick_with(position_m, |now| now.levitation_n = levitation_n)
+    }
+
+    /// A tick with the next number and a change of its sample.
+    pub fn tick_with(&mut self, position_m: [f32; 2], change: impl FnOnce(&mut Sample)) -> Command {
+        self.sequence = self.sequence.wrapping_add(1);
+        let now = sample_with(self.sequence, position_m, change);
+        self.supervisor.tick(&now)
     }
 
     /// Whirls backward on the wall until it is braked, 20 µm a tick, and says at which angle it is.

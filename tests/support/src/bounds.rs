@@ -1,7 +1,20 @@
 //! What holds for every command.
 
 use crate::storm::AnyBits;
-use supervisor::{Config, CoreCommand, Status};
+use supervisor::{Command, Config, CoreCommand, Scaling, Status};
+
+/// A command in newtons, per unit of the force.
+pub fn per_unit(scaling: &Scaling, command: &Command) -> CoreCommand<f32> {
+    CoreCommand {
+        force: command.force_n.map(|x| x / scaling.force_n),
+        own: command.own_n.map(|x| x / scaling.force_n),
+        mode: command.mode,
+        limits: command.limits,
+        events: command.events,
+        integrator: command.integrator,
+        severity: command.severity,
+    }
+}
 
 /// What holds for every command \[caps\], by the configuration.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,8 @@
 //! A supervisor on the bench: a configuration, samples, and what its border promises.
 
-use supervisor::{Command, Config, PlanePositions, Sample, Shaft, Status, Supervisor};
+use supervisor::{
+    Command, Config, Events, PlanePositions, RotorSupervisor, Sample, Shaft, Status, Supervisor,
+};
 
 /// An AMB rotor: 10 kg, 0.2 mm, 1000 N, 20 kHz; neither caps of the axes nor slew limit nor budget.
 pub fn config() -> Config {
@@ -17,13 +19,35 @@ pub fn config() -> Config {
     }
 }
 
+/// The same with a change.
+pub fn config_with(change: impl FnOnce(&mut Config)) -> Config {
+    let mut config = config();
+    change(&mut config);
+    config
+}
+
+/// A supervisor of the bench.
+///
+/// # Panics
+/// If its configuration is not valid.
+pub fn new_supervisor() -> Supervisor<64> {
+    Supervisor::new(&config()).unwrap()
+}
+
+/// A rotor with this configuration at both ends.
+///
+/// # Panics
+/// If it is not valid.
+pub fn new_rotor(config: &Config) -> RotorSupervisor<64> {
+    RotorSupervisor::new(&shaft(config), &[*config; 2]).unwrap()
+}
+
 /// A gyroscopic rotor whose impacts at either end move the mass of this configuration.
 pub fn shaft(config: &Config) -> Shaft {
     let (mass_kg, arm_m) = (2.0 * config.mass_kg, 0.2);
     let end = |place_m: f32| PlanePositions {
-        retainer_m: place_m,
-        sensor_m: place_m,
         magnet_m: 0.8 * place_m,
+        ..all_at(place_m)
     };
     let transverse = mass_kg * arm_m * arm_m;
     Shaft {
@@ -32,6 +56,20 @@ pub fn shaft(config: &Config) -> Shaft {
         polar_inertia_kg_m2: 0.8 * transverse,
         places: [end(-arm_m), end(arm_m)],
     }
+}
+
+/// A plane of a rotor whose bearing, sensor and magnet are at one place \[m\].
+pub fn all_at(place_m: f32) -> PlanePositions {
+    PlanePositions {
+        retainer_m: place_m,
+        sensor_m: place_m,
+        magnet_m: place_m,
+    }
+}
+
+/// A reading of a rotor in the middle: no sensor stands still to the last digit.
+pub fn quiet(tick: u32) -> [f32; 2] {
+    [1e-6 * (tick % 3) as f32; 2]
 }
 
 /// A sample of a bearing that is on, spin counter-clockwise, levitation at rest.
@@ -43,6 +81,22 @@ pub fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
         spin_rad_s: 1000.0,
         ..Sample::default()
     }
+}
+
+/// The same with a change.
+pub fn sample_with(
+    sequence: u32,
+    position_m: [f32; 2],
+    change: impl FnOnce(&mut Sample),
+) -> Sample {
+    let mut sample = sample(sequence, position_m);
+    change(&mut sample);
+    sample
+}
+
+/// A sample under a levitation controller that asks for a force.
+pub fn asking(sequence: u32, position_m: [f32; 2], levitation_n: [f32; 2]) -> Sample {
+    sample_with(sequence, position_m, |now| now.levitation_n = levitation_n)
 }
 
 /// Ticks of a [`landing`] with what comes before and after it.
@@ -92,49 +146,31 @@ pub fn whirl_by(
         .collect()
 }
 
+/// Which of the commands tell one of these events.
+pub fn ticks_of(commands: &[Command], events: Events) -> Vec<usize> {
+    let told = commands.iter().map(|c| c.events.intersects(events));
+    (0..)
+        .zip(told)
+        .filter_map(|(i, told)| told.then_some(i))
+        .collect()
+}
+
+/// Checks a value to a share of what it should be.
+///
+/// # Panics
+/// If it is farther off, with both.
+#[track_caller]
+pub fn close(value: impl Into<f64>, expected: impl Into<f64>, share: f64) {
+    let (value, expected) = (value.into(), expected.into());
+    assert!((value / expected - 1.0).abs() < share, "{value} {expected}");
+}
+
 /// Length of a force \[N\].
 pub fn length(force_n: [f32; 2]) -> f64 {
     f64::hypot(f64::from(force_n[0]), f64::from(force_n[1]))
 }
 
-/// Checks a command against the caps and, on axes that act, the slew limit; hands its force on.
-///
-/// # Errors
-/// What is broken.
-pub fn check(
-    command: &Command,
-    last_n: [f32; 2],
-    status: Status,
-    config: &Config,
-) -> Result<[f32; 2], String> {
-    let force = command.force_n.map(f64::from);
-    let lost = [Status::AXIS_X_LOST, Status::AXIS_Y_LOST].map(|axis| status.contains(axis));
-    let cap = f64::from(config.force_max_n);
-    let say = |what: &str| Err(format!("{what}: {command:?} after {last_n:?}"));
-    if force.iter().any(|f| !f.is_finite()) {
-        return say("not finite");
-    }
-    if length(command.force_n) > cap * (1.0 + 2e-7) {
-        return say("beyond the cap");
-    }
-    let axis_cap = f64::from(config.axis_force_max_n);
-    if force.iter().any(|f| f.abs() > axis_cap * (1.0 + 2e-7)) {
-        return say("beyond the cap of an axis");
-    }
-    let mut change = [0.0; 2];
-    for axis in 0..2 {
-        if lost[axis] {
-            if force[axis] != 0.0 {
-                return say("force on a lost axis");
-            }
-        } else {
-            change[axis] = force[axis] - f64::from(last_n[axis]);
-        }
-    }
-    let step = f64::from(config.force_slew_n_s) * f64::from(config.sample_period_s);
-    // The force itself has only so many digits.
-    if f64::hypot(change[0], change[1]) > step * (1.0 + 1e-6) + 3e-7 * cap {
-        return say("faster than the slew limit");
-    }
-    Ok(command.force_n)
+/// Length of what two forces differ by \[N\].
+pub fn apart(a_n: [f32; 2], b_n: [f32; 2]) -> f64 {
+    length([a_n[0] - b_n[0], a_n[1] - b_n[1]])
 }

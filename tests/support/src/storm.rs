@@ -5,7 +5,7 @@ use crate::rig;
 use supervisor::{Config, CoreSample, PARAMETERS, Scalar, Status};
 
 /// A fast random stream (xorshift), the same for the same seed.
-#[derive(Debug, Clone)]
+#[derive(Debug, Default, Clone)]
 pub struct Chance(u64);
 
 impl Chance {
@@ -106,9 +106,10 @@ pub fn any_config(chance: &mut Chance) -> Config {
 }
 
 /// What the rotor does for some ticks.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Default, Clone, Copy)]
 enum Course {
     /// Near the centre.
+    #[default]
     Levitates,
     /// Straight through the clearance, back from the wall.
     Bounces,
@@ -119,7 +120,7 @@ enum Course {
 }
 
 /// Samples without end.
-#[derive(Debug, Clone)]
+#[derive(Debug, Default, Clone)]
 pub struct Storm {
     chance: Chance,
     course: Course,
@@ -142,15 +143,7 @@ impl Storm {
         Self {
             wild: chance.once_in(8),
             chance,
-            course: Course::Levitates,
-            left: 0,
-            position: [0.0; 2],
-            velocity: [0.0; 2],
-            angle: 0.0,
-            angle_step: 0.0,
-            sequence: 0,
-            status: 0,
-            spin: 0.0,
+            ..Self::default()
         }
     }
 
@@ -185,10 +178,7 @@ impl Storm {
         let on_wall = |angle: f32| [radius * angle.cos(), radius * angle.sin()];
         match self.course {
             Course::Levitates => {
-                self.position = [
-                    self.chance.between(-0.03, 0.03),
-                    self.chance.between(-0.03, 0.03),
-                ];
+                self.position = [(); 2].map(|()| self.chance.between(-0.03, 0.03));
             }
             Course::Bounces => {
                 for axis in 0..2 {
@@ -273,15 +263,14 @@ impl AnyBits for supervisor::Q {
 
 impl Storm {
     fn any_sample<S: AnyBits>(&mut self) -> CoreSample<S> {
-        let chance = &mut self.chance;
-        let any = |chance: &mut Chance| S::from_any_bits(chance.bits());
+        let mut bits = || self.chance.bits();
         CoreSample {
-            sequence: chance.bits() as u32,
-            status: Status::from_bits_retain(chance.bits() as u32),
-            position: [any(chance), any(chance)],
-            spin: any(chance),
-            levitation: [any(chance), any(chance)],
-            applied: [any(chance), any(chance)],
+            sequence: bits() as u32,
+            status: Status::from_bits_retain(bits() as u32),
+            position: [(); 2].map(|()| S::from_any_bits(bits())),
+            spin: S::from_any_bits(bits()),
+            levitation: [(); 2].map(|()| S::from_any_bits(bits())),
+            applied: [(); 2].map(|()| S::from_any_bits(bits())),
         }
     }
 
@@ -294,12 +283,7 @@ impl Storm {
         self.go();
         self.sequence = self.sequence.wrapping_add(1);
         let chance = &mut self.chance;
-        let mut forces = || {
-            [
-                S::from_f32(chance.between(-1.2, 1.2)),
-                S::from_f32(chance.between(-1.2, 1.2)),
-            ]
-        };
+        let mut forces = || [(); 2].map(|()| S::from_f32(chance.between(-1.2, 1.2)));
         let mut sample = CoreSample {
             sequence: self.sequence,
             status: Status::from_bits_retain(self.status),
@@ -311,21 +295,13 @@ impl Storm {
         let odd = chance.bits();
         if odd >> 60 == 0 {
             let fields = odd as u16;
-            let mut replace = |bit: u32, number: &mut S| {
+            let (at, spin) = (sample.position.iter_mut(), [&mut sample.spin]);
+            let forces = sample.levitation.iter_mut().chain(&mut sample.applied);
+            for (bit, number) in at.chain(spin).chain(forces).enumerate() {
                 if fields & (1 << bit) != 0 {
                     *number = S::from_any_bits(chance.bits());
                 }
-            };
-            let [px, py] = &mut sample.position;
-            replace(0, px);
-            replace(1, py);
-            replace(2, &mut sample.spin);
-            let [lx, ly] = &mut sample.levitation;
-            replace(3, lx);
-            replace(4, ly);
-            let [ax, ay] = &mut sample.applied;
-            replace(5, ax);
-            replace(6, ay);
+            }
             if fields & 0x180 == 0x180 {
                 sample.status = Status::from_bits_retain(chance.bits() as u32);
             }

@@ -1,10 +1,11 @@
 //! Where the force that is *delivered* points while the rotor whirls in contact.
 
-use firmware_bench::run::closed_loop::{Keep, run_policy};
+use crate::common::contend;
+use firmware_bench::run::closed_loop::Keep;
 use firmware_studies::machines::plants::{RATES_HZ, plants};
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::catalogue::cases;
-use firmware_studies::overloads::contenders::{Contender, Task};
+use firmware_studies::overloads::contenders::Contender;
 use plant_model::V2;
 use supervisor::Mode;
 
@@ -18,20 +19,9 @@ fn the_delivered_force_is_aimed_against_the_whirl_and_never_outwards() {
             let found = stored(&plant.name, rate_hz).unwrap();
             let cap_n = plant.scene.force_max_n(0);
             let mut inwards_rad = Vec::new();
-            for case in cases(&plant, found.tuned) {
-                if case.group != "whirl" {
-                    continue;
-                }
-                let acting = Contender::Supervisor
-                    .controller(Task::Impact, &found, &case.scene)
-                    .unwrap();
-                let ran = run_policy(
-                    &case.scene,
-                    (acting, "supervisor"),
-                    Keep::Trace,
-                    &mut |_| {},
-                );
-                let (_, trace) = ran.unwrap();
+            let all = cases(&plant, found.tuned).into_iter();
+            for case in all.filter(|case| case.group == "whirl") {
+                let (_, trace) = contend(Contender::Supervisor, &found, &case.scene, Keep::Trace);
                 // From when the force has come; where it is nearly all used, it is this law's.
                 for row in trace.rows.iter().filter(|row| row.plant.t_s > 1e-3) {
                     let (now, force_n) = (&row.plant, row.plant.delivered_n);
@@ -51,20 +41,13 @@ fn the_delivered_force_is_aimed_against_the_whirl_and_never_outwards() {
             let place = format!("{} at {rate_hz} Hz", plant.name);
             let count = inwards_rad.len();
             assert!(count > 50, "{place}: {count}");
-            let tilt_rad = plant
-                .scene
-                .plant(0)
-                .friction
-                .sliding
-                .coefficient(0.0)
-                .atan();
+            let sliding = &plant.scene.plant(0).friction.sliding;
+            let tilt_rad = sliding.coefficient(0.0).atan();
             let [low, middle] = [count / 20, count / 2].map(|i| inwards_rad[i]);
             println!("{place}: {count}, {low:.3} {middle:.3} of {tilt_rad:.3}");
             assert!(low > 0.0, "{place}: {low}");
-            assert!(
-                (0.9 * tilt_rad..3.0 * tilt_rad).contains(&middle),
-                "{place}: {middle}"
-            );
+            let wanted = 0.9 * tilt_rad..3.0 * tilt_rad;
+            assert!(wanted.contains(&middle), "{place}: {middle}");
         }
     }
 }

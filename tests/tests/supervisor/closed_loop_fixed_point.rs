@@ -1,6 +1,7 @@
 //! The fixed-point supervisor keeps rotors as well as `f32`: hardest impact that is recovered from.
 
-use firmware_bench::run::closed_loop::{Keep, run_policy};
+use crate::common::ran;
+use firmware_bench::run::closed_loop::Keep;
 use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_bench::scene::Scene;
 use firmware_studies::machines::plants::plants;
@@ -34,8 +35,7 @@ fn recoverable_m_s_finely(scene: &Scene, make: Make, from_m_s: f64) -> f64 {
     loop {
         scene.start.centre_velocity_m_s = V2::new(speed, 0.0);
         let policy = supervised(&scene, make(&scene).unwrap()).unwrap();
-        let run = run_policy(&scene, (policy, "supervised"), Keep::Decision, &mut |_| {});
-        if !run.unwrap().0.recovered {
+        if !ran(&scene, policy, Keep::Decision).0.recovered {
             return last;
         }
         last = speed;
@@ -53,18 +53,14 @@ fn fixed_point_recovers_from_the_same_impacts() {
             scene.planes[0].levitation = stored(&plant.name, rate_hz).map(|found| found.tuned);
             let name = format!("{} at {rate_hz} Hz", plant.name);
             let [float, fixed] = [single, of::<Q>].map(|make| by_the_catalogue_m_s(&scene, make));
-            assert!(
-                float > 0.2 && fixed == float,
-                "{name}: {float} m/s, fixed point {fixed} m/s"
-            );
+            let same = float > 0.2 && fixed == float;
+            assert!(same, "{name}: {float} m/s, fixed point {fixed} m/s");
             let from_m_s = 0.5 * float;
             let [float, fixed] =
                 [single, of::<Q>].map(|make| recoverable_m_s_finely(&scene, make, from_m_s));
-            println!("{name}: {float:.4} m/s, fixed point {fixed:.4} m/s");
-            assert!(
-                (fixed / float - 1.0).abs() < 0.01,
-                "{name}: {float} m/s, fixed point {fixed} m/s"
-            );
+            let text = format!("{name}: {float:.4} m/s, fixed point {fixed:.4} m/s");
+            println!("{text}");
+            assert!((fixed / float - 1.0).abs() < 0.01, "{text}");
         }
     }
 }

@@ -20,10 +20,8 @@ const LONGEST_S: f64 = 0.25;
 /// Every stream at both control rates.
 static STREAMS: LazyLock<Vec<Stream>> = LazyLock::new(|| {
     let is_number = |name: &str| !name.contains("not a number") && !name.contains("infinity");
-    [10_000.0, 20_000.0]
-        .into_iter()
-        .flat_map(|rate_hz| record(rate_hz, LONGEST_S, |_, case| is_number(&case.name)))
-        .collect()
+    let at = |rate_hz| record(rate_hz, LONGEST_S, |_, case| is_number(&case.name));
+    [10_000.0, 20_000.0].into_iter().flat_map(at).collect()
 });
 
 /// A tick that is not near a transition.
@@ -107,6 +105,13 @@ struct Count {
     largest: f64,
 }
 
+impl Count {
+    /// Whether faults of all sensors are among them.
+    fn are_all(&self) -> bool {
+        self.streams > 1500 && self.ticks > 3_700_000
+    }
+}
+
 /// All streams of some groups.
 fn count<S: Scalar>(wanted: impl Fn(&str) -> bool) -> Count {
     let mut sum = Count::default();
@@ -142,15 +147,10 @@ fn f32_commands_what_f64_does() {
     let sound = count::<f32>(|group| group != SENSOR_FAULTS);
     assert_eq!(sound.wrong_streams, 0, "{sound:?}");
     let faulty = count::<f32>(|group| group == SENSOR_FAULTS);
-    assert!(
-        faulty.streams > 1500 && faulty.ticks > 3_700_000,
-        "{faulty:?}"
-    );
+    assert!(faulty.are_all(), "{faulty:?}");
     assert_eq!(faulty.wrong, 0, "{faulty:?}");
-    assert!(
-        faulty.wrong_streams < 5 && faulty.wrong_handover < 100,
-        "{faulty:?}"
-    );
+    let few = faulty.wrong_streams < 5 && faulty.wrong_handover < 100;
+    assert!(few, "{faulty:?}");
     let largest = sound.largest.max(faulty.largest);
     assert!(largest > 1e-4 && largest < 2e-3, "{largest}");
 }
@@ -161,10 +161,8 @@ fn fixed_point_commands_what_f64_does() {
     let sound = count::<Q>(|group| group != SENSOR_FAULTS);
     assert!(sound.streams > 1000 && sound.ticks > 2_400_000, "{sound:?}");
     assert!(100 * sound.wrong_streams < sound.streams, "{sound:?}");
-    assert!(
-        1000 * (sound.wrong + sound.wrong_handover) < sound.ticks,
-        "{sound:?}"
-    );
+    let wrong = sound.wrong + sound.wrong_handover;
+    assert!(1000 * wrong < sound.ticks, "{sound:?}");
     assert!(sound.largest > 1e-3, "{sound:?}");
 }
 
@@ -172,10 +170,7 @@ fn fixed_point_commands_what_f64_does() {
 /// stream of fifty and one tick of a thousand, and for one tick of 500 000 in which two cases of the law meet.
 fn fixed_point_commands_what_f64_does_under_sensor_faults() {
     let faulty = count::<Q>(|group| group == SENSOR_FAULTS);
-    assert!(
-        faulty.streams > 1500 && faulty.ticks > 3_700_000,
-        "{faulty:?}"
-    );
+    assert!(faulty.are_all(), "{faulty:?}");
     assert!(500_000 * faulty.wrong < faulty.ticks, "{faulty:?}");
     assert!(50 * faulty.wrong_streams < faulty.streams, "{faulty:?}");
     assert!(1000 * faulty.wrong_handover < faulty.ticks, "{faulty:?}");

@@ -3,6 +3,7 @@
 
 mod aim_in_whirl;
 mod closed_loop_fixed_point;
+mod common;
 mod fixed_point;
 mod forward_rub;
 mod loads_that_stay;

@@ -1,7 +1,8 @@
 //! The bearing goes back only to a controller that asks for what the rotor is held with.
 
+use crate::common::ran;
 use firmware_bench::device::loads::{Disturbance, Shape};
-use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::closed_loop::Keep;
 use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_bench::scene::Scene;
 use firmware_studies::machines::plants::plants;
@@ -48,18 +49,13 @@ fn a_rising_load_is_not_handed_over_again_and_again() {
             scene.planes[0].levitation = stored(&plant.name, 20_000.0).map(|found| found.tuned);
             let supervisor = Supervisor::new(&scene.planes[0].supervisor.unwrap()).unwrap();
             let policy = supervised(&scene, Box::new(BeforeNothing(supervisor))).unwrap();
-            let run = (policy, "supervisor");
-            let (_, trace) = run_policy(&scene, run, Keep::Trace, &mut |_| {}).unwrap();
+            let (_, trace) = ran(&scene, policy, Keep::Trace);
             let samples = trace.rows.iter().filter(|row| !row.mode_change);
-            let handed_over = samples
-                .filter_map(|row| row.supervisor)
-                .filter(|trace| trace.events.contains(Events::HANDOVER))
-                .count();
-            assert!(
-                handed_over <= 6,
-                "{}: {share} caps, {handed_over}",
-                plant.name
-            );
+            let said = samples.filter_map(|row| row.supervisor);
+            let hands_over = said.filter(|said| said.events.contains(Events::HANDOVER));
+            let handed_over = hands_over.count();
+            let what = format!("{}: {share} caps, {handed_over}", plant.name);
+            assert!(handed_over <= 6, "{what}");
             all += handed_over;
         }
     }

@@ -1,8 +1,9 @@
 //! A levitation controller that hardly asks for anything in the middle gets the bearing all the same.
 
+use crate::common::ran;
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::device::loads::Disturbance;
-use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::closed_loop::Keep;
 use firmware_bench::run::controller::controller;
 use firmware_bench::run::trace::TraceRow;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -15,10 +16,8 @@ use supervisor::Mode;
 /// Requirement: SR-26
 #[test]
 fn noise_in_the_middle_does_not_hold_the_hand_over_up() {
-    for plant in plants(20_000.0).unwrap() {
-        if !plant.name.starts_with("P1") {
-            continue;
-        }
+    let all = plants(20_000.0).unwrap().into_iter();
+    for plant in all.filter(|plant| plant.name.starts_with("P1")) {
         for seed in 0..5 {
             // Beyond what shaft and magnet stop before the wall.
             let mut scene = plant.scene.clone();
@@ -39,8 +38,7 @@ fn noise_in_the_middle_does_not_hold_the_hand_over_up() {
                 ..Disturbance::default()
             }];
             let policy = controller(PolicyKind::Supervisor, &scene, 0).unwrap();
-            let acting = (policy, "supervisor");
-            let (_, trace) = run_policy(&scene, acting, Keep::Trace, &mut |_| {}).unwrap();
+            let (_, trace) = ran(&scene, policy, Keep::Trace);
             let modes = trace.rows.iter().filter_map(TraceRow::supervisor_mode);
             let modes: Vec<Mode> = modes.collect();
             let engaged = modes.iter().filter(|m| **m != Mode::Levitated).count();

@@ -5,7 +5,7 @@ use firmware_bench::device::loads::{Disturbance, TimedChange};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome;
-use firmware_bench::run::trace::Trace;
+use firmware_bench::run::trace::{Trace, TraceRow};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::{Change, V2};
@@ -24,10 +24,8 @@ fn seen(scene: &Scene, policy: PolicyKind) -> (Figures, Trace) {
 /// The AMB rotor of `overload_then_release` at another speed and rate of the loop, without its overload.
 fn rotor_at(spin_hz: f64, rate_hz: u32) -> Scene {
     let text = fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let text = text.replace(
-        "sample_rate_hz = 20000",
-        &format!("sample_rate_hz = {rate_hz}"),
-    );
+    let rate = format!("sample_rate_hz = {rate_hz}");
+    let text = text.replace("sample_rate_hz = 20000", &rate);
     let mut scene = Scene::parse("overload_then_release", &text).unwrap();
     assert_eq!(scene.sample_rate_hz, f64::from(rate_hz));
     scene.disturbances.clear();
@@ -51,12 +49,16 @@ fn blade_lost(spin_hz: f64, caps: f64, rate_hz: u32) -> Scene {
     scene
 }
 
+/// Ticks of a stretch of a run in which the supervisor was in this mode.
+fn ticks_in(mode: Mode, rows: &[TraceRow]) -> usize {
+    let in_mode = |row: &&TraceRow| row.supervisor_mode() == Some(mode);
+    rows.iter().filter(in_mode).count()
+}
+
 /// Share of the last part of a run in which the levitation controller had the bearing.
 fn levitated_at_the_end(trace: &Trace) -> f64 {
     let last = &trace.rows[trace.rows.len() / 2..];
-    let levitated = |mode: Option<Mode>| mode == Some(Mode::Levitated);
-    let ticks = last.iter().filter(|row| levitated(row.supervisor_mode()));
-    ticks.count() as f64 / last.len() as f64
+    ticks_in(Mode::Levitated, last) as f64 / last.len() as f64
 }
 
 /// An unbalance beyond the cap needs no force where its circle has room: the supervisor leaves the rotor to it, or
@@ -86,9 +88,7 @@ fn without_the_spin_it_is_a_load() {
         let mut scene = blade_lost(300.0, 1.3, 20_000);
         scene.spin_sensor.valid = valid;
         let (_, trace) = seen(&scene, PolicyKind::Supervisor);
-        (trace.rows.iter())
-            .filter(|row| row.supervisor_mode() == Some(Mode::HandedBack))
-            .count()
+        ticks_in(Mode::HandedBack, &trace.rows)
     };
     assert!(handed_back(false) > 100);
     assert_eq!(handed_back(true), 0);
@@ -110,8 +110,8 @@ fn a_load_that_stands_still_is_seen_as_soon() {
             let mut scene = scene.clone();
             scene.spin_sensor.valid = known;
             let (_, trace) = seen(&scene, PolicyKind::Supervisor);
-            let acts = |mode: Option<Mode>| mode != Some(Mode::Levitated);
-            let first = trace.rows.iter().find(|row| acts(row.supervisor_mode()));
+            let acts = |row: &&TraceRow| row.supervisor_mode() != Some(Mode::Levitated);
+            let first = trace.rows.iter().find(acts);
             first.expect("it has to act").plant.t_s
         };
         let later_s = engaged_s(true) - engaged_s(false);
@@ -134,21 +134,17 @@ fn a_push_on_a_rotor_at_rest_is_no_speed() {
         };
         scene.disturbances = vec![load(0.01, 0.05, 1.5), load(0.06, 0.44, 0.55)];
         scene.planes[0].sensor.noise_rms_m = 3e-6;
-        let config = scene.planes[0]
-            .supervisor
-            .as_mut()
-            .expect("this scene has one");
+        let config = scene.planes[0].supervisor.as_mut().unwrap();
         config.observer_pole_contact = pole;
         config.observer_pole_flight = pole;
         config.sensor_step_m = 3e-6;
         let (own, trace) = seen(&scene, PolicyKind::Supervisor);
         assert_ne!(own.outcome, Outcome::Pinned, "pole {pole}");
-        let pinned = |mode: Option<Mode>| mode == Some(Mode::Pinned);
-        let first = trace.rows.iter().filter(|row| row.plant.t_s < 0.06);
-        let before = first.filter(|row| pinned(row.supervisor_mode())).count();
+        let overloaded = trace.rows.partition_point(|row| row.plant.t_s < 0.06);
+        let before = ticks_in(Mode::Pinned, &trace.rows[..overloaded]);
         assert!(before > 100, "pole {pole}: the overload pins it");
-        let after = trace.rows.iter().filter(|row| row.plant.t_s > 0.08);
-        let still = after.filter(|row| pinned(row.supervisor_mode())).count();
+        let after = trace.rows.partition_point(|row| row.plant.t_s <= 0.08);
+        let still = ticks_in(Mode::Pinned, &trace.rows[after..]);
         assert_eq!(still, 0, "pole {pole}: pinned for {still} ticks");
     }
 }
