@@ -1,7 +1,7 @@
 //! An archive of several events in C: the bytes of the one in Rust, on this machine and in the emulator.
 
-use crate::firmware::said_by;
-use crate::library::{Target, beside, said_with_rig};
+use crate::firmware::said_on_boards;
+use crate::library::said_with_rig;
 use crate::rig::Rig;
 use std::fmt::Write;
 use supervisor::{Archive, Stamp, Supervisor};
@@ -52,10 +52,7 @@ fn an_archive_in_c_is_that_of_rust() {
 
 #[test]
 fn an_archive_in_firmware_is_that_of_rust() {
-    for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(said) = said_by(target, &beside("archive.c")) else {
-            return;
-        };
+    for (target, said) in said_on_boards("archive.c") {
         assert_eq!(said, said_in_rust(), "{target:?}");
     }
 }

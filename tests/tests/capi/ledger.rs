@@ -1,7 +1,7 @@
 //! A ledger of landings in C: the bytes of the one in Rust, on this machine and in the emulator.
 
-use crate::firmware::said_by;
-use crate::library::{Target, beside, said_with_rig};
+use crate::firmware::said_on_boards;
+use crate::library::said_with_rig;
 use crate::rig::Rig;
 use std::fmt::Write;
 use supervisor::{Ledger, Supervisor};
@@ -43,10 +43,7 @@ fn a_ledger_in_c_is_that_of_rust() {
 
 #[test]
 fn a_ledger_in_firmware_is_that_of_rust() {
-    for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(said) = said_by(target, &beside("ledger.c")) else {
-            return;
-        };
+    for (target, said) in said_on_boards("ledger.c") {
         assert_eq!(said, said_in_rust(), "{target:?}");
     }
 }

@@ -10,16 +10,12 @@ use firmware_bench::record::replay::replay;
 use firmware_bench::record::story::Event;
 use firmware_bench::run::controller as bench;
 use serde_json::Value;
-use std::fs;
-use std::path::Path;
-use std::process::Output;
 use supervisor::{
     Config, Core, Events, NO_STATE, Prepared, Q, RotorSupervisor, Scalar, Stamp, Status, Supervisor,
 };
+use system_tests::ran::{Folder, has, list};
 use system_tests::rig::{config, landing, sample, shaft};
 use system_tests::storm::{AnyBits, Chance, Storm};
-use system_tests::{host, run_scene, scene_path};
-use tempfile::TempDir;
 use test_support::records::written;
 
 /// A landing of one plane, of a core without floating point, and of a rotor.
@@ -196,23 +192,13 @@ fn a_replay_ends_where_the_configuration_changes() {
     assert_eq!(replay.ticks, at - record.head.state_at as usize);
 }
 
-fn review(file: &Path, more: &[&str]) -> Output {
-    let mut command = host();
-    command.arg("review").arg(file).args(more);
-    command.output().expect("the host starts")
-}
-
 /// A run leaves a record; a person reads what happened, and a program the same.
 #[test]
 fn a_person_and_a_program_read_what_happened() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    let scene = scene_path("overload_then_release");
-    assert!(run_scene(&scene, &out, &[]).status.success());
-    let file = out.join("record_supervisor.bin");
-    let shown = review(&file, &[]);
-    let text = String::from_utf8(shown.stdout).unwrap();
-    assert!(shown.status.success(), "{text}");
+    let folder = Folder::fresh();
+    folder.ran("run @overload_then_release --out .").good();
+    let review = |more: &str| folder.ran(&format!("review record_supervisor.bin {more}"));
+    let text = review("").good();
     for word in [
         "touch",
         "the levitation controller has the bearing again",
@@ -224,10 +210,9 @@ fn a_person_and_a_program_read_what_happened() {
         "[N]",
         "to the end of the event",
     ] {
-        assert!(text.contains(word), "{word} is not in\n{text}");
+        has(&text, &[word]);
     }
-    let json = review(&file, &["--json"]);
-    let told: Value = serde_json::from_slice(&json.stdout).unwrap();
+    let told = review("--json").json();
     assert_eq!(
         (&told["intact"], &told["format"]),
         (&true.into(), &3.into())
@@ -236,28 +221,25 @@ fn a_person_and_a_program_read_what_happened() {
     assert_eq!(told["summary"]["coast_down"], false);
     assert_eq!(told["replay"]["differing"], 0);
     assert!(told["replay"]["ticks"].as_u64() > Some(300));
-    let text = fs::read(out.join("verdict.json")).unwrap();
-    let verdict: Value = serde_json::from_slice(&text).unwrap();
+    let verdict = folder.json("verdict.json");
     let supervision = &verdict["policies"]["supervisor"]["supervision"];
     assert_eq!(told["summary"]["landings"], supervision["landings"]);
-    let ticks = told["planes"][0]["ticks"].as_array().unwrap();
-    let csv = String::from_utf8(review(&file, &["--csv"]).stdout).unwrap();
-    assert_eq!(csv.lines().count(), 1 + ticks.len());
+    let ticks = list(&told["planes"][0]["ticks"]);
+    assert_eq!(review("--csv").good().lines().count(), 1 + ticks.len());
 
     // Damaged: what is whole is shown, and the exit code is that of bad input.
-    let mut bytes = fs::read(&file).unwrap();
+    let mut bytes = folder.bytes("record_supervisor.bin");
     let at = bytes.len() / 2;
     bytes[at] ^= 1;
-    fs::write(&file, &bytes).unwrap();
-    let shown = review(&file, &[]);
-    assert_eq!(shown.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&shown.stderr).contains("are of no whole section"));
-    assert!(String::from_utf8_lossy(&shown.stdout).contains("ENGAGED"));
-    let json = review(&file, &["--json"]);
-    assert_eq!(json.status.code(), Some(2));
-    let told: Value = serde_json::from_slice(&json.stdout).unwrap();
+    folder.put("record_supervisor.bin", &bytes);
+    let shown = review("");
+    has(&shown.printed, &["ENGAGED"]);
+    has(&shown.fails(2), &["are of no whole section"]);
+    let json = review("--json");
+    let told: Value = serde_json::from_str(&json.printed).unwrap();
+    json.fails(2);
     assert_eq!(told["intact"], false);
-    assert!(told["error"].as_str().unwrap().contains("bytes"));
+    has(told["error"].as_str().unwrap(), &["bytes"]);
 }
 
 /// A stamp comes back.

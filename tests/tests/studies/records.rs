@@ -2,7 +2,7 @@
 
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
-use firmware_bench::run::trace::{Recorder, TraceRow};
+use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::run_all;
 use firmware_studies::machines::rotors::RotorCase;
@@ -83,13 +83,6 @@ fn records_of_closed_loops_replay_to_the_bit() {
     );
 }
 
-/// Nobody who wants rows; a supervisor is read out where somebody listens.
-struct Nobody;
-
-impl Recorder for Nobody {
-    fn row(&mut self, _row: &TraceRow) {}
-}
-
 /// Both planes of a rotor, from what both remembered.
 #[test]
 fn records_of_rotors_replay_to_the_bit() {
@@ -110,19 +103,11 @@ fn records_of_rotors_replay_to_the_bit() {
                 config.bending_first_hz = hz as f32;
             }
         }
-        let (mut first, mut second) = (Nobody, Nobody);
-        let recorders = Recorders {
-            planes: vec![&mut first, &mut second],
-            axis: None,
-        };
-        let rigour = Rigour::default();
-        let ran = record(
-            &scene,
-            PolicyKind::Supervisor,
-            recorders,
-            rigour,
-            &mut |_| {},
-        );
+        // A supervisor is read out where somebody listens.
+        let mut traces = vec![Trace::default(); 2];
+        let recorders = Recorders::of_planes(&mut traces);
+        let (kind_of, rigour) = (PolicyKind::Supervisor, Rigour::default());
+        let ran = record(&scene, kind_of, recorders, rigour, &mut |_| {});
         let planes = ran.unwrap_or_default();
         let records: Option<Vec<Vec<u8>>> = (planes.into_iter())
             .map(|(_, read_out)| read_out?.flight_record)

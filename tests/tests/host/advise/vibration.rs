@@ -4,13 +4,12 @@ use super::shaken::{
     Path, Shake, after_a_touch, after_an_approach, engaged_for_long, on_the_wall, round_the_wall,
     shaken,
 };
-use super::{AMB, advice, advise, amb, stderr};
+use super::{AMB, advice, advise, amb};
 use firmware_bench::advise::RUNOUT_SPEED_SHARE;
 use firmware_bench::scene::suggest::{Nominal, suggested};
-use serde_json::Value;
 use std::f64::consts::TAU;
 use supervisor::{Core, CoreSample, Mode, Prepared, Status};
-use system_tests::scene_path;
+use system_tests::ran::{has, lacks, list, number};
 
 /// Whatever the mode, the size and the frequency: a force within the cap does at most 4·F·A of work in a cycle on a
 /// vibration of amplitude A, F for each metre of its path. In flight it damps well below the crossover at any size, and drives
@@ -186,60 +185,36 @@ fn a_runout_beyond_the_limit_is_told() {
         assert_eq!(told(n, runout_m).is_some(), expected, "{runout_m:?}, {n:?}");
     }
     let warning = told(at_spin(200.0), Some(8e-5)).unwrap();
-    assert!(
-        warning.text.contains("80.0 µm at 200.0 Hz"),
-        "{}",
-        warning.text
-    );
-    assert!(warning.remedy.contains("subtract"), "{}", warning.remedy);
+    has(&warning.text, &["80.0 µm at 200.0 Hz"]);
+    has(&warning.remedy, &["subtract"]);
 }
 
 #[test]
 fn text_and_json_say_where_damping_ends() {
-    let with = |more: &[&str]| advise(&[&AMB[..], more].concat());
-    let json = |more: &[&str]| -> Value {
-        let output = with(&[more, &["--json"]].concat());
-        assert!(output.status.success(), "{}", stderr(&output));
-        serde_json::from_slice(&output.stdout).unwrap()
-    };
-    let plain = json(&[]);
-    let hz = plain["crossover_hz"].as_f64().unwrap();
+    let with = |more: &str| advise(&format!("{AMB} {more}"));
+    let plain = with("--json").json();
+    let hz = number(&plain["crossover_hz"]);
     assert!((hz - 817.0).abs() < 1.0, "{hz}");
-    assert!(plain["driving_hz"].as_f64().unwrap() > hz);
-    assert!(plain["driving_n_s_m"].as_f64().unwrap() > 9e3);
+    assert!(number(&plain["driving_hz"]) > hz);
+    assert!(number(&plain["driving_n_s_m"]) > 9e3);
     assert!(plain["runout_limit_m"].is_null() && plain["nominal"]["spin_hz"].is_null());
-    let turning = json(&["--spin-hz=-200", "--runout-m=9e-5"]);
-    let limit_m = turning["runout_limit_m"].as_f64().unwrap();
+    let turning = with("--spin-hz=-200 --runout-m=9e-5 --json").json();
+    let limit_m = number(&turning["runout_limit_m"]);
     assert!((limit_m - 4.502e-5).abs() < 1e-8, "{limit_m}");
     assert_eq!(turning["nominal"]["runout_m"], 9e-5);
-    let keys: Vec<&Value> = (turning["warnings"].as_array().unwrap().iter())
-        .map(|w| &w["key"])
-        .collect();
-    assert!(keys.contains(&&Value::from("runout")), "{keys:?}");
+    let mut warnings = list(&turning["warnings"]).iter();
+    assert!(warnings.any(|w| w["key"] == "runout"), "{turning}");
 
-    let text = String::from_utf8(with(&["--spin-hz=200"]).stdout).unwrap();
-    for part in [
-        "817.0 Hz",
-        "at most with 9490 N s/m",
-        "most runout at 200.0 Hz",
-        "45.0 µm",
-    ] {
-        assert!(text.contains(part), "{part}: {text}");
-    }
-    assert!(
-        !String::from_utf8(with(&[]).stdout)
-            .unwrap()
-            .contains("most runout")
-    );
+    let text = with("--spin-hz=200").good();
+    has(&text, &["817.0 Hz", "at most with 9490 N s/m"]);
+    has(&text, &["most runout at 200.0 Hz", "45.0 µm"]);
+    lacks(&with("").good(), &["most runout"]);
 }
 
 /// A scene has its spin; the runout is told beside it.
 #[test]
 fn a_runout_may_be_told_beside_a_scene() {
-    let path = scene_path("overload_then_release");
-    let output = advise(&[path.to_str().unwrap(), "--json", "--runout-m=6e-5"]);
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let json = advise("@overload_then_release --json --runout-m=6e-5").json();
     assert_eq!(json["nominal"]["spin_hz"], 200.0);
-    let warnings = json["warnings"].to_string();
-    assert!(warnings.contains("\"runout\""), "{warnings}");
+    has(&json["warnings"].to_string(), &["\"runout\""]);
 }
