@@ -5,6 +5,7 @@ pub mod golden;
 pub mod parameters;
 pub mod per_unit;
 pub mod plants;
+pub mod ran;
 pub mod recording;
 pub mod requirements;
 pub mod target;
@@ -14,7 +15,7 @@ pub use test_support::{bearing, rig, storm};
 
 use firmware_bench::scene::Scene;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 /// Root of the workspace.
 pub fn root() -> PathBuf {
@@ -33,11 +34,6 @@ pub fn scene_path(name: &str) -> PathBuf {
 /// If it cannot be loaded, with the reason.
 pub fn scene(name: &str) -> Scene {
     Scene::load(&scene_path(name)).unwrap_or_else(|e| panic!("{e}"))
-}
-
-/// Path of one of the project's scenes of a whole rotor.
-pub fn machine_scene_path(name: &str) -> PathBuf {
-    scene_path(&format!("machines/{name}"))
 }
 
 /// Python with what `tests/python/requirements.txt` names. `None` on a user's machine without it, with a message.
@@ -97,14 +93,4 @@ pub fn host() -> Command {
         binary.display()
     );
     Command::new(binary)
-}
-
-/// What the host's `run` does with a scene: results go to `out`, `more` are further arguments.
-///
-/// # Panics
-/// As [`host`], or if it does not start.
-pub fn run_scene(scene: &Path, out: &Path, more: &[&str]) -> Output {
-    let mut run = host();
-    run.arg("run").arg(scene).arg("--out").arg(out).args(more);
-    run.output().expect("the host starts")
 }

@@ -6,7 +6,6 @@ use plant_model::analysis::impact::{
     run_impacts,
 };
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
-use plant_model::contact::damping_for_restitution;
 use plant_model::lanes::{Ended, Ending, LaneParams, Launch, run};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -18,7 +17,7 @@ use std::ops::Range;
 type Rig = (f64, f64, f64, f64, f64, f64);
 
 fn rig((mu, damping_ratio, hz, e, clearance_m, eccentricity_m): Rig) -> PlantParams {
-    let (mass_kg, natural, stiffness_n_m) = (10.0, TAU * hz, 1e8);
+    let (mass_kg, natural) = (MASS_KG, TAU * hz);
     PlantParams {
         rotor: RotorParams {
             mass_kg,
@@ -29,11 +28,7 @@ fn rig((mu, damping_ratio, hz, e, clearance_m, eccentricity_m): Rig) -> PlantPar
         },
         contact: ContactParams {
             clearance_m,
-            law: LinearContact {
-                stiffness_n_m,
-                damping_n_s_m: damping_for_restitution(e, stiffness_n_m, mass_kg).unwrap(),
-            }
-            .into(),
+            law: linear(1e8, e).into(),
         },
         friction: friction(mu),
         ..bouncing(1e8)
@@ -42,7 +37,7 @@ fn rig((mu, damping_ratio, hz, e, clearance_m, eccentricity_m): Rig) -> PlantPar
 
 fn friction(coefficient: f64) -> FrictionParams {
     FrictionParams {
-        sliding: SlidingFriction::Constant { coefficient },
+        sliding: constant(coefficient),
         rolling_coefficient: 0.0,
     }
 }
@@ -114,11 +109,9 @@ fn impacts_end_alike() {
 #[test]
 fn the_other_wall_is_seen() {
     let params = rig((0.125, 0.003, 45.0, 0.102, 2e-4, 0.0));
-    let start = |i: u32| Start {
-        position_m: V2::new(2e-4, 0.0),
-        velocity_m_s: V2::new(0.94, 0.34) * (1.0 + 0.1 * f64::from(i)),
-        spin_rad_s: 250.0,
-        spin_phase_rad: 0.0,
+    let start = |i: u32| {
+        let faster = 1.0 + 0.1 * f64::from(i);
+        start(V2::new(2e-4, 0.0), faster * V2::new(0.94, 0.34), 250.0)
     };
     let lane = LaneParams::of(&params).unwrap();
     let launches = (0..60).map(|i| (Launch::new(lane, &start(i), 0.01).unwrap(), i));
@@ -135,7 +128,7 @@ fn the_other_wall_is_seen() {
 
 #[test]
 fn critical_speeds_are_the_same() {
-    let of = |of_rig: Rig, inclination_rad: f64| {
+    let of = |(of_rig, inclination_rad)| {
         let aim = Aim {
             inclination_rad,
             spin_rad_s: 250.0,
@@ -143,15 +136,10 @@ fn critical_speeds_are_the_same() {
         };
         (rig(of_rig), aim)
     };
-    let mut cases: Vec<_> = draw(&(rigs(0.0), -0.3..1.4_f64), 40)
-        .into_iter()
-        .map(|(of_rig, inclination_rad)| of(of_rig, inclination_rad))
-        .collect();
+    let drawn = draw(&(rigs(0.0), -0.3..1.4_f64), 40).into_iter();
+    let mut cases: Vec<_> = drawn.map(of).collect();
     // What lanes do not know goes the other way: free spin, a stator that moves; and what has no critical speed.
-    cases[1].0.spin = SpinParams::Free {
-        inertia_kg_m2: 0.05,
-        drive_torque_n_m: 0.0,
-    };
+    cases[1].0.spin = free_spin(0.05, 0.0);
     cases[2].0.rotor.stiffness_n_m = -1.0;
     let search = Search {
         step: 0.03,
@@ -167,12 +155,7 @@ fn critical_speeds_are_the_same() {
 }
 
 fn at_speed(speed_m_s: f64) -> Start {
-    Start {
-        position_m: V2::zeros(),
-        velocity_m_s: V2::new(speed_m_s, 0.0),
-        spin_rad_s: 400.0,
-        spin_phase_rad: 0.0,
-    }
+    start(V2::zeros(), V2::new(speed_m_s, 0.0), 400.0)
 }
 
 /// Runs of 0.2 s from a speed each, in this order.
@@ -213,10 +196,7 @@ fn ways_are_the_same() {
                 assert_eq!(lane.events, changes, "{speed_m_s} m/s at {rtol:e}");
                 assert_eq!(lane.in_contact, now.mode.in_contact());
                 let apart = (lane.position_m - now.position_m).norm() / 3e-4;
-                assert!(
-                    apart < 200.0 * rtol,
-                    "{speed_m_s} m/s at {rtol:e}: {apart:e}"
-                );
+                assert!(apart < 200.0 * rtol, "{speed_m_s} at {rtol:e}: {apart:e}");
                 rolled += usize::from(now.mode == ContactMode::Roll);
             }
             assert!(rolled > 100, "{rolled} roll");
@@ -244,21 +224,11 @@ fn what_lanes_do_not_know_is_refused() {
     let lane = LaneParams::of(&known).unwrap();
     type Change = fn(&mut PlantParams);
     let unknown: &[Change] = &[
-        |p| {
-            p.spin = SpinParams::Free {
-                inertia_kg_m2: 0.1,
-                drive_torque_n_m: 0.0,
-            }
-        },
+        |p| p.spin = free_spin(0.1, 0.0),
         |p| p.rotor.stiffness_n_m = -1e3,
         |p| p.rotor.mass_kg = f64::NAN,
         |p| p.friction.rolling_coefficient = 0.01,
-        |p| {
-            p.magnet = Some(MagnetParams {
-                force_max_n: 100.0,
-                lag_s: 1e-3,
-            });
-        },
+        |p| p.magnet = Some(magnet_of(100.0, 1e-3)),
         |p| p.contact.law = spring(1e8, 1e6).into(),
         |p| p.contact.clearance_m = 0.0,
     ];
@@ -343,10 +313,9 @@ fn whirl_between_the_ends_of_a_step_is_seen() {
             options,
             ..Criterion::default()
         };
-        let by_lanes = run_impacts(&[(params, impact)], &criterion)[0]
-            .clone()
-            .unwrap();
-        assert_eq!(by_lanes.outcome, Outcome::Whirl, "{rtol:e}");
-        assert_eq!(by_lanes, run_impact(&params, &impact, &criterion).unwrap());
+        let by_lanes = run_impacts(&[(params, impact)], &criterion).remove(0);
+        let alone = run_impact(&params, &impact, &criterion).unwrap();
+        assert_eq!(alone.outcome, Outcome::Whirl, "{rtol:e}");
+        assert_eq!(by_lanes.unwrap(), alone);
     }
 }

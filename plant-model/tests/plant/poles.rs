@@ -135,11 +135,8 @@ fn energy_closes_while_poles_pull_a_rotor_about_its_bearings() {
     let mut rotor = rotor(&with(coil(0.02, 1.5, 60.0)), &from, auto());
     for i in 0..200 {
         let command_n = 0.75 * CAP_N * direction(0.2 * f64::from(i));
-        advance(
-            &mut rotor,
-            1e-4 * f64::from(i + 1),
-            &commands([command_n; 2]),
-        );
+        let t_s = 1e-4 * f64::from(i + 1);
+        advance(&mut rotor, t_s, &commands([command_n; 2]));
     }
     assert!(rotor.meters().iter().all(|meters| meters.impacts > 0));
     assert!(rotor.audit().flows.control.abs() > 1e-3);

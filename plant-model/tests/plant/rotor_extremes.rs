@@ -183,12 +183,9 @@ fn a_ring_of_a_microgram_is_named() {
         ..Options::default()
     };
     let mut machine = rotor(&params, &struck(400.0), options);
-    let ended = (1..=2000).find_map(|i| {
-        let t = 5e-5 * f64::from(i);
-        machine
-            .advance(t, &MachineInputs::default(), &mut |_, _| {})
-            .err()
-    });
+    let nothing = MachineInputs::default();
+    let mut advance = |t: f64| machine.advance(t, &nothing, &mut |_, _| {}).err();
+    let ended = (1..=2000).find_map(|i| advance(5e-5 * f64::from(i)));
     let ended = ended.expect("it takes more steps than that").to_string();
     assert!(ended.contains("ring on"), "{ended}");
     assert!(ended.contains("too fast for this scene"), "{ended}");

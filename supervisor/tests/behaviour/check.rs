@@ -110,7 +110,8 @@ fn levitate(config: &Config, wiring: &Wiring) -> (Supervisor<64>, Finding, u32) 
             status: wiring.status,
             position_m: (wiring.position)(read_m),
             spin_rad_s: wiring.spin * SPIN_RAD_S as f32,
-            levitation_n: [0, 1].map(|axis| configured_n[axis] + wiring.stimulus * stimulus_n[axis]),
+            levitation_n: [0, 1]
+                .map(|axis| configured_n[axis] + wiring.stimulus * stimulus_n[axis]),
             ..Sample::default()
         };
         let command = supervisor.tick(&now);

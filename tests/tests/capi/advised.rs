@@ -1,14 +1,10 @@
 //! `advise --format c` is a configuration that firmware in C or C++ can take as it is, all of it or in nine numbers.
 
-use crate::library::{Target, built, good, includes, tool};
-use std::fs;
+use crate::library::{STRICT, Target, built, cpp, includes, linked_with, tool};
+use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
-use system_tests::{host, root, scene_path};
-use tempfile::TempDir;
-
-/// All warnings, as errors.
-const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
+use system_tests::ran::{Folder, edited, list, number, ran, scene_text};
 
 /// Shows the values of both forms, and makes a supervisor of each.
 const MAIN: &str = "
@@ -22,29 +18,48 @@ int main(void) {
 }
 ";
 
-fn advised(scene: &Path, more: &str) -> String {
-    let mut advise = host();
-    advise.arg("advise").arg(scene).args(more.split(' '));
-    good(&advise.output().unwrap())
+fn advised(folder: &Folder, scene: &str, more: &str) -> String {
+    folder.ran(&format!("advise {scene} {more}")).good()
 }
 
-/// What a program of this text says, compiled as this language.
-fn printed(compiler: &str, standard: &str, text: &str, library: &Path) -> Option<String> {
-    let folder = TempDir::new().unwrap();
-    let extension = if compiler == "cc" { "c" } else { "cpp" };
-    let source = folder.path().join("config").with_extension(extension);
-    let program = folder.path().join("config");
-    fs::write(&source, text).unwrap();
-    let mut compile = tool(compiler)?;
-    compile.arg(standard).args(WARNINGS).args(includes(library));
-    compile
-        .arg(&source)
-        .arg(library.join("libsupervisor_capi.a"));
-    compile
-        .args(["-lpthread", "-ldl", "-lm", "-o"])
-        .arg(&program);
-    good(&compile.output().unwrap());
-    Some(good(&Command::new(&program).output().unwrap()))
+/// What is in use of a plane that is advised. What a simulated machine need not confirm, a real one has to.
+fn in_use(plane: &Value) -> Vec<f32> {
+    let of_firmware = |p: &Value| match p["name"].as_str() {
+        Some("check_first") => 1.0,
+        _ => number(
+            p.get("replaced_by")
+                .filter(|x| !x.is_null())
+                .unwrap_or(&p["value"]),
+        ) as f32,
+    };
+    list(&plane["parameters"]).iter().map(of_firmware).collect()
+}
+
+/// What programs of this text say, as C and as C++, line by line.
+fn said(text: &str, library: &Path) -> Vec<Vec<String>> {
+    let folder = Folder::fresh();
+    let text = format!("#include <stdio.h>\n#include \"amb_supervisor.h\"\n{text}");
+    let compilers = [
+        (tool("cc"), "-std=c99", "config.c"),
+        (cpp(), "-std=c++17", "config.cpp"),
+    ];
+    let mut all = Vec::new();
+    for (compiler, standard, source) in compilers {
+        let Some(mut compile) = compiler else {
+            continue;
+        };
+        compile
+            .arg(standard)
+            .args(&STRICT[1..])
+            .args(includes(library));
+        compile
+            .arg(folder.put(source, &text))
+            .args(linked_with(library));
+        ran(compile.arg("-o").arg(folder.at("config"))).good();
+        let said = ran(&mut Command::new(folder.at("config"))).good();
+        all.push(said.lines().map(str::to_owned).collect());
+    }
+    all
 }
 
 /// A scene as it comes, and one that knows and sets more: a range, steps, a cap of the axes, a slew limit, a contact that hardens.
@@ -53,56 +68,30 @@ fn an_advised_configuration_is_c_and_cpp() {
     let Some(library) = built(Target::Host) else {
         return;
     };
-    let folder = TempDir::new().unwrap();
-    let own = folder.path().join("own.toml");
-    let text = fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let text = text
-        .replacen(
-            "stiffness_n_m = 1e9",
-            "stiffness_n_mn = 1e13\nrestitution_speed_m_s = 0.3",
-            1,
-        )
-        .replacen(
-            "[magnet]",
-            "[magnet]\naxis_force_max_n = 800.0\nslew_n_s = 2e7",
-            1,
-        )
-        .replacen("[sensor]", "[sensor]\nrange_m = 8e-4", 1);
-    fs::write(&own, text + "\n[supervisor]\nhold_share = 0.625\n").unwrap();
-    let plant = root().join("firmware-host/scenes/plants/p4.toml");
-    for scene in [scene_path("overload_then_release"), plant, own] {
-        let (all, short) = (
-            advised(&scene, "--format c"),
-            advised(&scene, "--format c --short"),
-        );
+    let folder = Folder::fresh();
+    let hardens = "stiffness_n_mn = 1e13\nrestitution_speed_m_s = 0.3";
+    let limits = "[magnet]\naxis_force_max_n = 800.0\nslew_n_s = 2e7";
+    let edits = [
+        ("stiffness_n_m = 1e9", hardens),
+        ("[magnet]", limits),
+        ("[sensor]", "[sensor]\nrange_m = 8e-4"),
+    ];
+    let text = edited(&scene_text("overload_then_release"), &edits);
+    folder.put("own.toml", text + "\n[supervisor]\nhold_share = 0.625\n");
+    for scene in ["@overload_then_release", "@plants/p4", "own.toml"] {
+        let [all, short] =
+            ["--format c", "--format c --short"].map(|more| advised(&folder, scene, more));
         assert!(all.is_ascii() && short.is_ascii(), "{all}\n{short}");
         assert_eq!(short.matches("f, ").count(), 9, "{short}");
-        let text = format!("#include <stdio.h>\n#include \"amb_supervisor.h\"\n{all}{short}{MAIN}");
-
-        let advice: serde_json::Value = serde_json::from_str(&advised(&scene, "--json")).unwrap();
-        // What a simulated machine need not confirm, a real one has to.
-        let of_firmware = |p: &serde_json::Value| match p["name"].as_str() {
-            Some("check_first") => Some(1.0),
-            _ => p["replaced_by"].as_f64().or(p["value"].as_f64()),
-        };
-        let in_use: Vec<f32> = (advice["parameters"].as_array().unwrap().iter())
-            .map(|p| of_firmware(p).unwrap() as f32)
-            .collect();
-        for (compiler, standard) in [("cc", "-std=c99"), ("g++", "-std=c++17")] {
-            // C++ is not needed by anything else: without a compiler there is nothing to check.
-            if compiler == "g++" && Command::new(compiler).arg("--version").output().is_err() {
-                eprintln!("not checked as C++: g++ is missing");
-                continue;
-            }
-            let Some(printed) = printed(compiler, standard, &text, &library) else {
-                continue;
-            };
-            let printed = printed.lines().map(|line| {
+        let advice: Value = serde_json::from_str(&advised(&folder, scene, "--json")).unwrap();
+        let in_use = in_use(&advice);
+        for printed in said(&format!("{all}{short}{MAIN}"), &library) {
+            let printed = printed.iter().map(|line| {
                 let (all, short) = line.split_once(' ').unwrap();
                 (all.parse::<f32>().unwrap(), short.parse::<f32>().unwrap())
             });
             let (all, short): (Vec<f32>, Vec<f32>) = printed.unzip();
-            assert_eq!((&all, &short), (&in_use, &in_use), "{}", scene.display());
+            assert_eq!((&all, &short), (&in_use, &in_use), "{scene}");
         }
     }
 }
@@ -113,8 +102,8 @@ fn an_advised_rotor_is_c_and_cpp() {
     let Some(library) = built(Target::Host) else {
         return;
     };
-    let scene = root().join("firmware-host/scenes/one_machine/flexible.toml");
-    let all = advised(&scene, "--format c");
+    let (folder, scene) = (Folder::fresh(), "@one_machine/flexible");
+    let all = advised(&folder, scene, "--format c");
     let main = "
 int main(void) {
     static amb_rotor rotor;
@@ -122,26 +111,10 @@ int main(void) {
     return amb_rotor_init(&rotor, sizeof rotor, &shaft, config, 2 * AMB_PARAMETERS) != AMB_OK;
 }
 ";
-    let text = format!("#include <stdio.h>\n#include \"amb_supervisor.h\"\n{all}{main}");
-    for (compiler, standard) in [("cc", "-std=c99"), ("g++", "-std=c++17")] {
-        if compiler == "g++" && Command::new(compiler).arg("--version").output().is_err() {
-            eprintln!("not checked as C++: g++ is missing");
-            continue;
-        }
-        let Some(printed) = printed(compiler, standard, &text, &library) else {
-            continue;
-        };
-        let advice: serde_json::Value = serde_json::from_str(&advised(&scene, "--json")).unwrap();
-        let mut values = printed.lines().map(|line| line.parse::<f32>().unwrap());
-        for plane in advice["planes"].as_array().unwrap() {
-            for p in plane["parameters"].as_array().unwrap() {
-                let of_plane = match p["name"].as_str() {
-                    Some("check_first") => Some(1.0),
-                    _ => p["replaced_by"].as_f64().or(p["value"].as_f64()),
-                };
-                assert_eq!(values.next(), of_plane.map(|v| v as f32), "{}", p["name"]);
-            }
-        }
-        assert_eq!(values.next(), None);
+    let advice: Value = serde_json::from_str(&advised(&folder, scene, "--json")).unwrap();
+    let of_planes: Vec<f32> = list(&advice["planes"]).iter().flat_map(in_use).collect();
+    for printed in said(&format!("{all}{main}"), &library) {
+        let values = printed.iter().map(|line| line.parse::<f32>().unwrap());
+        assert_eq!(values.collect::<Vec<f32>>(), of_planes);
     }
 }

@@ -1,7 +1,7 @@
 //! A configuration from nine numbers in C: what Rust makes of them, bit for bit, on this machine and in the emulator.
 
-use crate::firmware::output_on;
-use crate::library::{Target, beside, output_with_rig};
+use crate::firmware::said_on_boards;
+use crate::library::said_with_rig;
 use supervisor::Config;
 use system_tests::bearing::bearing;
 
@@ -24,18 +24,15 @@ fn of_rust() -> String {
 
 #[test]
 fn nine_numbers_make_the_same_configuration_in_c() {
-    let Some(output) = output_with_rig("bearing.c") else {
+    let Some(said) = said_with_rig("bearing.c") else {
         return;
     };
-    assert_eq!(output, of_rust());
+    assert_eq!(said, of_rust());
 }
 
 #[test]
 fn nine_numbers_make_the_same_configuration_in_firmware() {
-    for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(output) = output_on(target, &beside("bearing.c")) else {
-            return;
-        };
-        assert_eq!(output, of_rust(), "{target:?}");
+    for (target, said) in said_on_boards("bearing.c") {
+        assert_eq!(said, of_rust(), "{target:?}");
     }
 }

@@ -1,12 +1,14 @@
 //! Firmware in C, in an emulator, against the supervisor in Rust on this machine.
 
 use crate::library::{
-    STRICT, Target, beside, built, built_at, capi, good, host_program, includes, tool,
+    STRICT, Target, beside, built, built_at, capi, includes, said_with_rig, tool,
 };
+
 use crate::rig::Rig;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 use supervisor::{Events, Mode, Supervisor};
+use system_tests::ran::{Folder, Ran, has, lacks, ran};
 use system_tests::target::OTHER_LEVELS;
 
 /// The last line of the programs in C.
@@ -55,22 +57,14 @@ fn summary_of_rust() -> String {
 /// Requirement: SR-34
 #[test]
 fn c_on_this_machine_does_what_rust_does() {
-    let Some(library) = built(Target::Host) else {
+    let Some(said) = said_with_rig("replay.c") else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("replay");
-    let sources = [beside("replay.c"), capi().join("examples/rig.c")];
-    let Some(output) = host_program(&sources, &library, &program) else {
-        return;
-    };
-    good(&output);
-    let text = good(&Command::new(program).output().unwrap());
-    assert_eq!(text.lines().last(), Some(summary_of_rust().as_str()));
+    assert_eq!(said.lines().last(), Some(summary_of_rust().as_str()));
 }
 
 /// Links firmware of a main file, the rig, the board and a library; `None` where a tool is missing.
-fn linked(target: Target, main: &Path, library: &Path, image: &Path) -> Option<Output> {
+fn linked(target: Target, main: &Path, library: &Path, image: &Path) -> Option<Ran> {
     let mut gcc = target.compiler()?;
     let examples = capi().join("examples");
     // Not pedantic: start-up code must turn functions into addresses.
@@ -82,14 +76,14 @@ fn linked(target: Target, main: &Path, library: &Path, image: &Path) -> Option<O
     gcc.arg("-T").arg(examples.join("mps2.ld"));
     gcc.args(["-nostartfiles", "--specs=rdimon.specs", "-Wl,--gc-sections"]);
     gcc.arg(library.join("libsupervisor_capi.a")).arg("-lm");
-    Some(gcc.arg("-o").arg(image).output().expect("gcc starts"))
+    Some(ran(gcc.arg("-o").arg(image)))
 }
 
 /// What firmware says in the emulator; `None` where a tool is missing.
-pub(crate) fn output_on(target: Target, main: &Path) -> Option<String> {
-    let folder = tempfile::tempdir().unwrap();
-    let image = folder.path().join("firmware.elf");
-    good(&linked(target, main, &built(target)?, &image)?);
+pub(crate) fn said_by(target: Target, main: &Path) -> Option<String> {
+    let folder = Folder::fresh();
+    let image = folder.at("firmware.elf");
+    linked(target, main, &built(target)?, &image)?.good();
     let qemu = tool("qemu-system-arm")?;
     // A fault ends the program, but nothing ends one that waits for ever.
     let mut run = Command::new("timeout");
@@ -98,7 +92,16 @@ pub(crate) fn output_on(target: Target, main: &Path) -> Option<String> {
     // An instruction takes a nanosecond of the board's time, whatever else this machine does meanwhile.
     run.args(["-icount", "shift=0,sleep=off"]);
     run.args(["-semihosting-config", "enable=on,target=native"]);
-    Some(good(&run.arg("-kernel").arg(image).output().unwrap()))
+    Some(ran(run.arg("-kernel").arg(image)).good())
+}
+
+/// What a C file beside these tests says on boards with an FPU, and with floats in software; on none where a tool is missing.
+pub(crate) fn said_on_boards(source: &str) -> Vec<(Target, String)> {
+    let said = |target| Some((target, said_by(target, &beside(source))?));
+    [Target::CortexM4F, Target::CortexM0]
+        .into_iter()
+        .map_while(said)
+        .collect()
 }
 
 /// Requirement: SR-34
@@ -106,51 +109,51 @@ pub(crate) fn output_on(target: Target, main: &Path) -> Option<String> {
 fn c_firmware_does_what_rust_does() {
     // With an FPU, and with floats in software.
     for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(text) = output_on(target, &capi().join("examples/firmware.c")) else {
+        let Some(said) = said_by(target, &capi().join("examples/firmware.c")) else {
             return;
         };
-        let last = text.lines().last();
-        assert_eq!(last, Some(summary_of_rust().as_str()), "{target:?}: {text}");
-        assert!(text.contains("backward whirl, events 0x0008"), "{text}");
-        assert!(text.contains("record of version 4, "), "{text}");
-        assert!(!text.contains("checksum wrong"), "{text}");
+        let last = said.lines().last();
+        assert_eq!(last, Some(summary_of_rust().as_str()), "{target:?}: {said}");
+        assert!(said.contains("backward whirl, events 0x0008"), "{said}");
+        assert!(said.contains("record of version 4, "), "{said}");
+        assert!(!said.contains("checksum wrong"), "{said}");
     }
 }
 
 /// Requirement: SR-39
 #[test]
 fn landings_are_counted_over_a_reset() {
-    let Some(text) = output_on(Target::CortexM4F, &beside("kept.c")) else {
+    let Some(said) = said_by(Target::CortexM4F, &beside("kept.c")) else {
         return;
     };
     let landings = |text: &str, begin: &str| -> Vec<u32> {
-        let lines = text.lines().filter_map(|line| line.strip_prefix(begin));
+        let lines = said.lines().filter_map(|line| line.strip_prefix(begin));
         let rests = lines.filter_map(|rest| rest.strip_suffix(text));
         rests.map(|number| number.parse().unwrap()).collect()
     };
     let at_boot = landings(" landings so far", "bearing 1: ");
     let at_end = landings(" landings", "bearing 1: ");
-    assert_eq!((at_boot.len(), at_end.len()), (2, 2), "{text}");
-    assert!(at_boot[0] == 0 && at_end[0] > 0, "{text}");
+    assert_eq!((at_boot.len(), at_end.len()), (2, 2), "{said}");
+    assert!(at_boot[0] == 0 && at_end[0] > 0, "{said}");
     assert_eq!(
         (at_boot[1], at_end[1]),
         (at_end[0], 2 * at_end[0]),
-        "{text}"
+        "{said}"
     );
     // Both courses are the same.
     let summary = summary_of_rust();
-    assert_eq!(text.matches(summary.as_str()).count(), 2, "{text}");
+    assert_eq!(said.matches(summary.as_str()).count(), 2, "{said}");
 }
 
 /// As the page on C says: nothing needs a large stack, and a supervisor of 28 kilobytes is made in its place.
 /// Requirement: SR-36
 #[test]
 fn calls_need_little_stack() {
-    let Some(text) = output_on(Target::CortexM4F, &beside("stack.c")) else {
+    let Some(said) = said_by(Target::CortexM4F, &beside("stack.c")) else {
         return;
     };
     let bytes = |name: &str| -> usize {
-        let line = text
+        let line = said
             .lines()
             .find_map(|l| l.strip_prefix(name)?.strip_prefix(' '));
         line.unwrap().trim().parse().unwrap()
@@ -171,7 +174,7 @@ fn calls_need_little_stack() {
         ("archive-section", 4552),
     ] {
         let needed = bytes(call);
-        assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {text}");
+        assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");
     }
 }
 
@@ -179,35 +182,38 @@ fn calls_need_little_stack() {
 /// Requirement: SR-32
 #[test]
 fn no_level_of_optimisation_leaves_a_panic_path() {
-    let folder = tempfile::tempdir().unwrap();
-    let image = folder.path().join("firmware.elf");
-    let main = capi().join("examples/firmware.c");
-    let target = Target::CortexM4F;
     for level in OTHER_LEVELS {
-        let library = built_at(target, level);
-        let Some(output) = library.and_then(|l| linked(target, &main, &l, &image)) else {
+        let main = capi().join("examples/firmware.c");
+        let Some(linked) = linked_at(level, &main) else {
             return;
         };
-        good(&output);
+        linked.good();
     }
+}
+
+/// Firmware of this main file, with the library at another level of optimisation; `None` where a tool is missing.
+fn linked_at(level: &str, main: &Path) -> Option<Ran> {
+    let library = built_at(Target::CortexM4F, level)?;
+    let folder = Folder::fresh();
+    linked(
+        Target::CortexM4F,
+        main,
+        &library,
+        &folder.at("firmware.elf"),
+    )
 }
 
 /// Firmware in which a panic can be reached does not link: with the same library, which adds a call that can.
 /// Requirement: SR-32
 #[test]
 fn a_planted_panic_does_not_link() {
-    let folder = tempfile::tempdir().unwrap();
-    let image = folder.path().join("firmware.elf");
-    let target = Target::CortexM4F;
     for level in OTHER_LEVELS {
-        let library = built_at(target, level);
-        let Some(output) = library.and_then(|l| linked(target, &beside("planted.c"), &l, &image))
-        else {
+        let Some(linked) = linked_at(level, &beside("planted.c")) else {
             return;
         };
-        let text = String::from_utf8_lossy(&output.stderr);
-        assert!(!output.status.success(), "the planted panic linked");
-        assert!(text.contains("`amb_a_panic_can_be_reached'"), "{text}");
-        assert!(!text.contains("`amb_planted_panic'"), "it is there: {text}");
+        assert_ne!(linked.code, Some(0), "the planted panic linked");
+        has(&linked.said, &["`amb_a_panic_can_be_reached'"]);
+        // It is there.
+        lacks(&linked.said, &["`amb_planted_panic'"]);
     }
 }

@@ -1,6 +1,6 @@
 //! The header says what the library does: every number, every text, every place in every struct.
 
-use crate::library::{STRICT, Target, built, good, includes, tool};
+use crate::library::{STRICT, Target, built, cpp, includes, tool};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::process::Command;
@@ -11,6 +11,7 @@ use supervisor_capi::layout::HEADER;
 use supervisor_capi::structs::LAYOUTS;
 use supervisor_capi::{Code, RECORD};
 use system_tests::parameters;
+use system_tests::ran::{Folder, has, lacks, ran};
 
 const MODES: [(&str, Mode); 8] = [
     ("LEVITATED", Mode::Levitated),
@@ -89,16 +90,22 @@ fn same<'a>(prefix: &str, ours: impl Iterator<Item = (&'a str, i64)>) {
 
 #[test]
 fn numbers_are_the_same() {
-    let bits = |(name, bits): (&'static str, u32)| (name, i64::from(bits));
-    let all = Status::all();
+    let bits = |bits: u32| i64::from(bits);
+    let status = Status::all();
     same(
         "STATUS_",
-        all.iter_names().map(|(n, b)| bits((n, b.bits()))),
+        status.iter_names().map(|(n, b)| (n, bits(b.bits()))),
     );
-    let all = Limits::all();
-    same("LIMIT_", all.iter_names().map(|(n, b)| bits((n, b.bits()))));
-    let all = Events::all();
-    same("EVENT_", all.iter_names().map(|(n, b)| bits((n, b.bits()))));
+    let limits = Limits::all();
+    same(
+        "LIMIT_",
+        limits.iter_names().map(|(n, b)| (n, bits(b.bits()))),
+    );
+    let events = Events::all();
+    same(
+        "EVENT_",
+        events.iter_names().map(|(n, b)| (n, bits(b.bits()))),
+    );
     same("MODE_", MODES.iter().map(|(n, m)| (*n, *m as i64)));
     same("REFUSAL_", REFUSALS.iter().map(|(n, r)| (*n, *r as i64)));
     same("FINDING_", FINDINGS.iter().map(|(n, f)| (*n, *f as i64)));
@@ -112,7 +119,7 @@ fn numbers_are_the_same() {
     assert_eq!(defined("NOTHING").get(""), Some(&1));
     let first =
         format!("#define AMB_ERROR_PARAMETER(index) ({FIRST_PARAMETER} - (amb_code)(index))");
-    assert!(HEADER.contains(&first), "{first}");
+    has(HEADER, &[&first]);
     assert_eq!(defined("RECORD_").get("ENTRIES"), Some(&(RECORD as i64)));
 }
 
@@ -181,25 +188,19 @@ fn layout_check() -> String {
 }
 
 /// Compiles a text as a language, without a program.
-fn compiles(mut compiler: Command, arguments: &[&str], source: &str, extension: &str) {
+fn compiles(mut compiler: Command, arguments: &[&str], source: &str, name: &str) {
     let library = built(Target::Host).unwrap();
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("check").with_extension(extension);
-    std::fs::write(&file, source).unwrap();
-    compiler
-        .args(arguments)
-        .args(includes(&library))
-        .arg("-c")
-        .arg(&file);
-    compiler.arg("-o").arg(folder.path().join("check.o"));
-    good(&compiler.output().unwrap());
+    let folder = Folder::fresh();
+    compiler.args(arguments).args(includes(&library));
+    compiler.arg("-c").arg(folder.put(name, source));
+    ran(compiler.arg("-o").arg(folder.at("check.o"))).good();
 }
 
 #[test]
 fn structs_have_the_same_layout() {
     for target in [Target::Host, Target::CortexM4F, Target::CortexM0] {
         if let Some(compiler) = target.compiler() {
-            compiles(compiler, &STRICT, &layout_check(), "c");
+            compiles(compiler, &STRICT, &layout_check(), "check.c");
         }
     }
 }
@@ -209,26 +210,17 @@ fn structs_have_the_same_layout() {
 fn the_header_is_clean() {
     let source = layout_check();
     let warnings = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wundef -Werror";
-    for standard in ["c99", "c11", "c17"] {
-        let Some(compiler) = Target::Host.compiler() else {
+    for standard in ["c99", "c11", "c17", "c++98", "c++11", "c++17"] {
+        let (compiler, name) = match standard.starts_with("c++") {
+            true => (cpp(), "check.cpp"),
+            false => (Target::Host.compiler(), "check.c"),
+        };
+        let Some(compiler) = compiler else {
             return;
         };
-        let mut arguments: Vec<&str> = warnings.split(' ').collect();
         let standard = format!("-std={standard}");
-        arguments.push(&standard);
-        compiles(compiler, &arguments, &source, "c");
-    }
-    // C++ is not needed by anything else: without a compiler there is nothing to check.
-    if Command::new("g++").arg("--version").output().is_err() {
-        eprintln!("not checked as C++: g++ is missing");
-        return;
-    }
-    for standard in ["c++98", "c++11", "c++17"] {
-        let mut arguments: Vec<&str> = warnings.split(' ').collect();
-        let standard = format!("-std={standard}");
-        arguments.push(&standard);
-        let compiler = tool("g++").expect("it was there");
-        compiles(compiler, &arguments, &source, "cpp");
+        let arguments: Vec<&str> = warnings.split(' ').chain([&standard[..]]).collect();
+        compiles(compiler, &arguments, &source, name);
     }
 }
 
@@ -236,29 +228,26 @@ fn the_header_is_clean() {
 /// end with the version.
 #[test]
 fn names_carry_the_version() {
-    let header: Vec<&str> = HEADER
+    let names = HEADER
         .lines()
-        .filter_map(|l| l.strip_prefix("#define amb_")?.split(' ').next())
-        .collect();
+        .filter_map(|l| l.strip_prefix("#define amb_")?.split(' ').next());
     let Some(library) = built(Target::CortexM4F) else {
         return;
     };
     let Some(mut nm) = tool("arm-none-eabi-nm") else {
         return;
     };
-    let archive = library.join("libsupervisor_capi.a");
-    let listed = nm.args(["-g", "--defined-only"]).arg(archive).output();
-    let listed = good(&listed.unwrap());
+    nm.args(["-g", "--defined-only"]);
+    let listed = ran(nm.arg(library.join("libsupervisor_capi.a"))).good();
     let mut found: Vec<&str> = (listed.split_whitespace())
         .filter_map(|word| word.strip_prefix("amb_"))
         .collect();
-    let mut wanted: Vec<String> = header
-        .iter()
+    let mut wanted: Vec<String> = names
         .map(|name| format!("{name}_abi{}", supervisor_capi::ABI))
         .collect();
     wanted.push("abi_version".to_owned());
     found.sort_unstable();
     wanted.sort_unstable();
     assert_eq!(found, wanted);
-    assert!(!listed.contains("panicking"), "{listed}");
+    lacks(&listed, &["panicking"]);
 }

@@ -1,13 +1,13 @@
 //! A ledger of landings in C: the bytes of the one in Rust, on this machine and in the emulator.
 
-use crate::firmware::output_on;
-use crate::library::{Target, beside, output_with_rig};
+use crate::firmware::said_on_boards;
+use crate::library::said_with_rig;
 use crate::rig::Rig;
 use std::fmt::Write;
 use supervisor::{Ledger, Supervisor};
 
 /// What `ledger.c` says.
-fn output_of_rust() -> String {
+fn said_in_rust() -> String {
     let mut supervisor = Supervisor::<512>::new(&Rig::config()).unwrap();
     let (mut rig, mut ledger, mut writes) = (Rig::new(), Ledger::new(7, 20.0), 0);
     while rig.tick < Rig::TICKS {
@@ -23,30 +23,27 @@ fn output_of_rust() -> String {
     }
     // More than one, so that both places are written to.
     assert!(writes >= 2 && ledger.landings >= 2, "{ledger:?}");
-    let mut output = String::new();
+    let mut said = String::new();
     for byte in ledger.to_bytes() {
-        let _ = write!(output, "{byte:02x}");
+        let _ = write!(said, "{byte:02x}");
     }
     let left = ledger.landings_left(ledger.worst_severity).unwrap();
     let landings = ledger.landings;
-    output + &format!(" {writes} written, {landings} landings, {left} left\n")
+    said + &format!(" {writes} written, {landings} landings, {left} left\n")
 }
 
 /// Requirement: SR-39
 #[test]
 fn a_ledger_in_c_is_that_of_rust() {
-    let Some(output) = output_with_rig("ledger.c") else {
+    let Some(said) = said_with_rig("ledger.c") else {
         return;
     };
-    assert_eq!(output, output_of_rust());
+    assert_eq!(said, said_in_rust());
 }
 
 #[test]
 fn a_ledger_in_firmware_is_that_of_rust() {
-    for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(output) = output_on(target, &beside("ledger.c")) else {
-            return;
-        };
-        assert_eq!(output, output_of_rust(), "{target:?}");
+    for (target, said) in said_on_boards("ledger.c") {
+        assert_eq!(said, said_in_rust(), "{target:?}");
     }
 }

@@ -1,7 +1,8 @@
 //! Builds the static library as firmware authors do, and C against it.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
+use system_tests::ran::{Folder, Ran, ran};
 use system_tests::root;
 use system_tests::target::at_level;
 
@@ -80,19 +81,17 @@ pub(crate) fn capi() -> PathBuf {
 /// Folder with the library for a target and its version, freshly built, the one that is handed out; `None` where the target
 /// is not installed (in CI: a failure).
 pub(crate) fn built(target: Target) -> Option<PathBuf> {
-    let triple = match target.triple() {
-        Some(triple) => triple.to_owned(),
-        None => {
-            let rustc = Command::new("rustc")
-                .args(["--print", "host-tuple"])
-                .output();
-            good(&rustc.unwrap()).trim().to_owned()
-        }
-    };
+    let triple = target.triple().map_or_else(host_tuple, str::to_owned);
     let mut script = Command::new(capi().join("prebuilt/library"));
     script.arg(&triple);
     finished(script)?;
     Some(root().join("target-fw/prebuilt").join(triple).join("fw"))
+}
+
+/// What rustc calls this machine.
+pub(crate) fn host_tuple() -> String {
+    let said = ran(Command::new("rustc").args(["--print", "host-tuple"])).good();
+    said.trim().to_owned()
 }
 
 /// The same at a level of optimisation other than 3, with a call that can panic, which nobody has to make. What it uses is shared
@@ -122,14 +121,13 @@ fn build(target: Target) -> Command {
 
 /// Runs a build; `None` where its target is not installed (in CI: a failure).
 pub(crate) fn finished(mut cargo: Command) -> Option<()> {
-    let output = cargo.output().expect("cargo starts");
-    let error = String::from_utf8_lossy(&output.stderr);
-    if error.contains("target may not be installed") {
-        assert!(std::env::var_os("CI").is_none(), "{error}");
+    let ran = ran(&mut cargo);
+    if ran.said.contains("target may not be installed") {
+        assert!(std::env::var_os("CI").is_none(), "{}", ran.said);
         eprintln!("skipped: the target is not installed; tests/run installs it");
         return None;
     }
-    assert!(output.status.success(), "{error}");
+    ran.good();
     Some(())
 }
 
@@ -153,37 +151,38 @@ pub(crate) fn includes(library: &Path) -> Vec<String> {
 pub(crate) const STRICT: [&str; 5] = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
 /// Builds a program for the host from C files, and says what the compiler said.
-pub(crate) fn host_program(sources: &[PathBuf], library: &Path, program: &Path) -> Option<Output> {
+pub(crate) fn host_program(sources: &[PathBuf], library: &Path, program: &Path) -> Option<Ran> {
     let mut cc = Target::Host.compiler()?;
     cc.args(STRICT).arg("-O1").args(includes(library));
-    cc.args(sources).arg(library.join("libsupervisor_capi.a"));
-    // Libraries of the system that Rust's own needs.
-    cc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(program);
-    Some(cc.output().expect("the compiler starts"))
+    cc.args(sources).args(linked_with(library));
+    Some(ran(cc.arg("-o").arg(program)))
+}
+
+/// The library, and those of the system that Rust's own needs.
+pub(crate) fn linked_with(library: &Path) -> [String; 4] {
+    let archive = library.join("libsupervisor_capi.a");
+    [&archive.display().to_string(), "-lpthread", "-ldl", "-lm"].map(str::to_owned)
 }
 
 /// What a program says that a C file beside these tests and the rig make on the host; `None` where a tool is missing.
-pub(crate) fn output_with_rig(source: &str) -> Option<String> {
-    let library = built(Target::Host)?;
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("program");
+pub(crate) fn said_with_rig(source: &str) -> Option<String> {
+    let folder = Folder::fresh();
+    let program = folder.at("program");
     let sources = [beside(source), capi().join("examples/rig.c")];
-    good(&host_program(&sources, &library, &program)?);
-    Some(good(&Command::new(program).output().unwrap()))
+    host_program(&sources, &built(Target::Host)?, &program)?.good();
+    Some(ran(&mut Command::new(program)).good())
+}
+
+/// The C++ compiler, which is needed by nothing else: without it there is nothing to check.
+pub(crate) fn cpp() -> Option<Command> {
+    if Command::new("g++").arg("--version").output().is_err() {
+        eprintln!("not checked as C++: g++ is missing");
+        return None;
+    }
+    Some(Command::new("g++"))
 }
 
 /// A C file beside these tests.
 pub(crate) fn beside(name: &str) -> PathBuf {
     root().join("tests/tests/capi").join(name)
-}
-
-/// What a command wrote, if it went well.
-///
-/// # Panics
-/// If it did not, with what it wrote.
-pub(crate) fn good(output: &Output) -> String {
-    let out = String::from_utf8_lossy(&output.stdout).into_owned();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{out}\n{error}");
-    out
 }

@@ -1,7 +1,8 @@
 //! The header against MISRA C:2012, as far as a free checker goes: what it finds is a deviation that the safety manual explains.
 
-use crate::library::{capi, good, tool};
+use crate::library::{capi, tool};
 use std::collections::BTreeSet;
+use system_tests::ran::{Folder, ran};
 use system_tests::root;
 
 /// Rules that cppcheck finds broken in a file, as 10.4.
@@ -9,22 +10,17 @@ fn broken(text: &str, standard: &str) -> BTreeSet<String> {
     let Some(mut cppcheck) = tool("cppcheck") else {
         return BTreeSet::new();
     };
-    let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let folder = Folder::fresh();
     let version = format!("#define AMB_LIBRARY_ABI {}\n", supervisor_capi::ABI);
-    write("amb_supervisor_abi.h", &version);
-    write("use.c", text);
-    cppcheck.args(["--addon=misra", "--enable=style", "--quiet"]);
-    cppcheck
-        .arg("--template={id}")
-        .arg(format!("--std={standard}"));
-    cppcheck.arg("-I.").arg("-I").arg(capi().join("include"));
-    let output = cppcheck.current_dir(&folder).arg("use.c").output().unwrap();
-    good(&output);
-    let shown = String::from_utf8_lossy(&output.stderr);
-    let rules = shown
-        .lines()
-        .filter_map(|id| id.strip_prefix("misra-c2012-"));
+    folder.put("amb_supervisor_abi.h", version);
+    folder.put("use.c", text);
+    cppcheck.args("--addon=misra --enable=style --quiet --template={id} -I. -I".split(' '));
+    cppcheck.arg(capi().join("include"));
+    cppcheck.arg(format!("--std={standard}"));
+    let ran = ran(cppcheck.current_dir(folder.at(".")).arg("use.c"));
+    assert_eq!(ran.code, Some(0), "{}{}", ran.printed, ran.said);
+    let lines = ran.said.lines();
+    let rules = lines.filter_map(|id| id.strip_prefix("misra-c2012-"));
     rules.map(str::to_owned).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Every documented misuse, from C.
 
-use crate::library::{beside, output_with_rig};
+use crate::library::{beside, said_with_rig};
 use supervisor_capi::{Code, code::CODES};
 
 /// One plane, a rotor in two, a ledger, and an archive.
@@ -15,7 +15,7 @@ const SOURCES: [&str; 4] = [
 #[test]
 fn every_misuse_gives_its_error_and_text() {
     for source in SOURCES {
-        let Some(output) = output_with_rig(source) else {
+        let Some(output) = said_with_rig(source) else {
             return;
         };
         assert!(output.ends_with(" checks, 0 failures\n"), "{output}");

@@ -1,9 +1,10 @@
 //! The crates as they are packed for a registry, and for firmware that vendors them: complete, and built where nothing else of the
 //! project is.
 
-use crate::library::{finished, good, tool};
+use crate::library::{finished, tool};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use system_tests::ran::{Ran, ran};
 use system_tests::root;
 
 /// Folder in the project and name of each crate that is packed.
@@ -41,27 +42,19 @@ fn unpacked(here: &Path) -> Vec<(PathBuf, PathBuf)> {
     pack.current_dir(root());
     pack.args(["package", "--no-verify", "--offline", "--allow-dirty"]);
     pack.args(CRATES.map(|(_, name)| format!("-p={name}")));
-    pack.arg("--target-dir").arg(here.join("target"));
-    let packed = pack.output().unwrap();
-    good(&packed);
-    let shown = String::from_utf8_lossy(&packed.stderr);
+    let Ran { code, said, .. } = ran(pack.arg("--target-dir").arg(here.join("target")));
+    assert_eq!(code, Some(0), "{said}");
     // Tests of a crate stay with its sources.
     let is_known = |line: &str| line.starts_with("warning: ignoring test `");
-    let mut others = shown.lines().filter(|line| !is_known(line));
-    assert!(!others.any(|line| line.contains("warning")), "{shown}");
+    let mut others = said.lines().filter(|line| !is_known(line));
+    assert!(!others.any(|line| line.contains("warning")), "{said}");
     CRATES
         .map(|(folder, name)| {
             let name = format!("{name}-{}", env!("CARGO_PKG_VERSION"));
             let file = here.join(format!("target/package/{name}.crate"));
             // As of now and not of the archive's time: cargo takes a source that is older than what was built for built.
             let mut tar = tool("tar").expect("every system has it");
-            good(
-                &tar.arg("-xzmf")
-                    .arg(file)
-                    .current_dir(here)
-                    .output()
-                    .unwrap(),
-            );
+            ran(tar.arg("-xzmf").arg(file).current_dir(here)).good();
             (root().join(folder), here.join(name))
         })
         .to_vec()

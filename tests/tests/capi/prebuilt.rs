@@ -1,9 +1,10 @@
 //! The folder for those without Rust: what uses it, and that the same sources give the same bytes in another folder.
 
-use crate::library::{STRICT, capi, good, tool};
+use crate::library::{STRICT, capi, host_tuple, tool};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
+use system_tests::ran::{Folder, Ran, flat, has, ran};
 use system_tests::root;
 
 /// Builds the folder for one target from sources that lie here, and says what the compiler said. The project's own are compiled
@@ -15,51 +16,35 @@ fn build(sources: &Path, out: &Path, target: &str) -> String {
         let apart = root().join("target-fw/prebuilt-test");
         script.env("CARGO_BUILD_BUILD_DIR", apart);
     }
-    let output = script.output().unwrap();
-    good(&output);
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn host() -> String {
-    let rustc = Command::new("rustc")
-        .args(["--print", "host-tuple"])
-        .output();
-    good(&rustc.unwrap()).trim().to_owned()
+    let Ran {
+        code,
+        said,
+        printed,
+    } = ran(&mut script);
+    assert_eq!(code, Some(0), "{printed}{said}");
+    said
 }
 
 /// What pkg-config says of the library, for the compiler.
 fn flags(lib: &Path) -> Option<Vec<String>> {
     let mut pkg_config = tool("pkg-config")?;
     pkg_config.env("PKG_CONFIG_PATH", lib.join("pkgconfig"));
-    let output = pkg_config
-        .args(["--static", "--cflags", "--libs", "amb_supervisor >= 0.1"])
-        .output();
-    Some(
-        good(&output.unwrap())
-            .split_whitespace()
-            .map(str::to_owned)
-            .collect(),
-    )
+    pkg_config.args(["--static", "--cflags", "--libs", "amb_supervisor >= 0.1"]);
+    let said = ran(&mut pkg_config).good();
+    Some(said.split_whitespace().map(str::to_owned).collect())
 }
 
 #[test]
 fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
-    let folder = tempfile::tempdir().unwrap();
-    let (out, host) = (folder.path().join("amb_supervisor"), host());
+    let folder = Folder::fresh();
+    let (out, host) = (folder.at("amb_supervisor"), host_tuple());
     build(&root(), &out, &host);
-    let (lib, two_planes) = (
-        out.join("lib").join(&host),
-        capi().join("examples/two_planes.c"),
-    );
+    let lib = out.join("lib").join(&host);
+    let two_planes = capi().join("examples/two_planes.c");
 
     let mut sums = tool("sha256sum").unwrap();
-    good(
-        &sums
-            .args(["--check", "--strict", "--quiet", "SHA256SUMS"])
-            .current_dir(&out)
-            .output()
-            .unwrap(),
-    );
+    sums.args(["--check", "--strict", "--quiet", "SHA256SUMS"]);
+    ran(sums.current_dir(&out)).good();
     for licence in [
         "LICENSE-MIT",
         "LICENSE-APACHE",
@@ -68,23 +53,15 @@ fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
         assert!(out.join(licence).exists(), "{licence}");
     }
 
-    let mut shown = Vec::new();
+    let mut said = Vec::new();
     if let (Some(mut cc), Some(flags)) = (tool("cc"), flags(&lib)) {
-        let program = folder.path().join("two_planes");
-        cc.args(STRICT)
-            .arg(&two_planes)
-            .args(flags)
-            .arg("-lm")
-            .arg("-o")
-            .arg(&program);
-        good(&cc.output().unwrap());
-        let library_path = Command::new(&program)
-            .env("LD_LIBRARY_PATH", &lib)
-            .arg("7")
-            .output();
-        shown.push(good(&library_path.unwrap()));
+        let program = folder.at("two_planes");
+        cc.args(STRICT).arg(&two_planes).args(flags);
+        ran(cc.args(["-lm", "-o"]).arg(&program)).good();
+        let mut run = Command::new(&program);
+        said.push(ran(run.env("LD_LIBRARY_PATH", &lib).arg("7")).good());
     }
-    if let Some(mut cmake) = tool("cmake") {
+    if tool("cmake").is_some() {
         let project = format!(
             "cmake_minimum_required(VERSION 3.20)\nproject(check C)\nfind_package(amb_supervisor {1}.{2} REQUIRED)\n\
              add_executable(static {0})\ntarget_link_libraries(static amb_supervisor::amb_supervisor m)\n\
@@ -93,56 +70,29 @@ fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
             env!("CARGO_PKG_VERSION_MAJOR"),
             env!("CARGO_PKG_VERSION_MINOR"),
         );
-        let sources = folder.path().join("cmake");
-        std::fs::create_dir(&sources).unwrap();
-        std::fs::write(sources.join("CMakeLists.txt"), project).unwrap();
+        folder.put("CMakeLists.txt", project);
         let prefix = format!("-DCMAKE_PREFIX_PATH={}", out.display());
-        good(
-            &cmake
-                .current_dir(&sources)
-                .args(["-B", "build", &prefix])
-                .output()
-                .unwrap(),
-        );
-        good(
-            &tool("cmake")
-                .unwrap()
-                .current_dir(&sources)
-                .args(["--build", "build"])
-                .output()
-                .unwrap(),
-        );
+        let cmake = |arguments: &[&str]| {
+            let mut cmake = Command::new("cmake");
+            ran(cmake.current_dir(folder.at(".")).args(arguments))
+        };
+        cmake(&["-B", "build", &prefix]).good();
+        cmake(&["--build", "build"]).good();
         for program in ["build/static", "build/shared"] {
-            shown.push(good(
-                &Command::new(sources.join(program))
-                    .arg("7")
-                    .output()
-                    .unwrap(),
-            ));
+            said.push(ran(Command::new(folder.at(program)).arg("7")).good());
         }
         // A target that is not there is named with those that are.
-        let mut wrong = tool("cmake").unwrap();
-        wrong.current_dir(&sources).args([
-            "-B",
-            "wrong",
-            &prefix,
-            "-DAMB_SUPERVISOR_TARGET=nowhere",
-        ]);
-        let wrong = String::from_utf8_lossy(&wrong.output().unwrap().stderr).replace("\n", " ");
-        assert!(
-            wrong.contains("nowhere") && wrong.contains(&host),
-            "{wrong}"
-        );
+        let nowhere = "-DAMB_SUPERVISOR_TARGET=nowhere";
+        let wrong = cmake(&["-B", "wrong", &prefix, nowhere]);
+        has(&flat(&wrong.said), &["nowhere", &host]);
     }
-    assert!(
-        shown
-            .iter()
-            .all(|text| text == &shown[0] && text.contains("touches")),
-        "{shown:?}"
-    );
+    for text in &said {
+        assert_eq!(text, &said[0]);
+        has(text, &["touches"]);
+    }
 
-    python(folder.path(), &host);
-    same_bytes_from_elsewhere(folder.path(), &out, &host);
+    python(&folder.at(""), &host);
+    same_bytes_from_elsewhere(&folder.at(""), &out, &host);
 }
 
 /// The example in Python, in a folder that has the library.
@@ -152,17 +102,11 @@ fn python(folder: &Path, host: &str) {
     };
     let script = std::fs::read_to_string(capi().join("examples/ctypes_tick.py")).unwrap();
     let script = script.replace("x86_64-unknown-linux-gnu", host);
-    let shown = good(
-        &python
-            .arg("-c")
-            .arg(script)
-            .current_dir(folder)
-            .output()
-            .unwrap(),
-    );
-    let lines: Vec<_> = shown.lines().collect();
+    python.args(["-c", &script]).current_dir(folder);
+    let said = ran(&mut python).good();
+    let lines: Vec<_> = said.lines().collect();
     assert_eq!(lines[0], "0 levitated -12.5 N 25.0 N");
-    assert!(lines[9].starts_with("9 approach -"), "{shown}");
+    assert!(lines[9].starts_with("9 approach -"), "{said}");
 }
 
 fn same_bytes_from_elsewhere(folder: &Path, out: &Path, target: &str) {
@@ -183,20 +127,15 @@ fn same_bytes_from_elsewhere(folder: &Path, out: &Path, target: &str) {
         "tests/support",
     ] {
         let mut copy = Command::new("cp");
-        copy.arg("-r")
-            .arg(root().join(part))
-            .arg(sources.join(part));
-        good(&copy.output().unwrap());
+        copy.arg("-r").arg(root().join(part));
+        ran(copy.arg(sources.join(part))).good();
     }
     let again = folder.join("again");
-    let shown = build(&sources, &again, target);
+    let said = build(&sources, &again, target);
     // Compiled there, and not found where the first ones were.
-    let compiled = format!(
-        "Compiling amb-supervisor v{} ({}",
-        env!("CARGO_PKG_VERSION"),
-        sources.display()
-    );
-    assert!(shown.contains(&compiled), "{shown}");
+    let version = env!("CARGO_PKG_VERSION");
+    let compiled = format!("Compiling amb-supervisor v{version} ({}", sources.display());
+    has(&said, &[&compiled]);
     let sums = |folder: &Path| -> BTreeSet<String> {
         let sums = std::fs::read_to_string(folder.join("SHA256SUMS")).unwrap();
         sums.lines().map(str::to_owned).collect()

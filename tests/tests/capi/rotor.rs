@@ -1,10 +1,11 @@
 //! The supervisor of a rotor in C: what Rust computes, in the emulator too; and the example with a model of its own.
 
-use crate::firmware::output_on;
-use crate::library::{Target, beside, built, capi, good, host_program, output_with_rig};
+use crate::firmware::said_on_boards;
+use crate::library::{Target, built, capi, host_program, said_with_rig};
 use crate::rig::Rig;
 use std::process::Command;
 use supervisor::{PlanePositions, RotorSupervisor, Shaft};
+use system_tests::ran::{Folder, ran};
 
 pub(crate) fn shaft() -> Shaft {
     let place = |retainer_m, sensor_m, magnet_m| PlanePositions {
@@ -25,7 +26,7 @@ fn pair_of_rust() -> String {
     let config = Rig::config();
     let mut rotor = RotorSupervisor::<512>::new(&shaft(), &[config; 2]).unwrap();
     let mut ends = [Rig::new(), Rig::new()];
-    let (mut others, mut asked) = (0, 0);
+    let (mut told, mut asked) = (0, 0);
     while ends[0].tick < Rig::TICKS {
         if let Some(config) = ends[0].reconfigures() {
             rotor.reconfigure(&shaft(), &[config; 2]).unwrap();
@@ -35,13 +36,13 @@ fn pair_of_rust() -> String {
         for (end, command) in ends.iter_mut().zip(&command.planes) {
             end.actuate(command);
         }
-        others += command.other_engaged.map(u32::from).iter().sum::<u32>();
+        told += command.other_engaged.map(u32::from).iter().sum::<u32>();
         asked += u32::from(command.coast_down);
     }
     let [first, second] = ends;
-    assert!(others > 100 && first.hash != second.hash, "{others}");
+    assert!(told > 100 && first.hash != second.hash, "{told}");
     format!(
-        "ticks {} engaged {others} coast-down {asked} hashes 0x{:08x} 0x{:08x}",
+        "ticks {} told {told} coast-down {asked} hashes 0x{:08x} 0x{:08x}",
         first.tick, first.hash, second.hash
     )
 }
@@ -49,20 +50,17 @@ fn pair_of_rust() -> String {
 /// Requirement: SR-34
 #[test]
 fn a_rotor_in_c_does_what_it_does_in_rust() {
-    let Some(output) = output_with_rig("pair.c") else {
+    let Some(said) = said_with_rig("pair.c") else {
         return;
     };
-    assert_eq!(output.lines().last(), Some(pair_of_rust().as_str()));
+    assert_eq!(said.lines().last(), Some(pair_of_rust().as_str()));
 }
 
 #[test]
 fn a_rotor_in_firmware_does_what_it_does_in_rust() {
-    for target in [Target::CortexM4F, Target::CortexM0] {
-        let Some(output) = output_on(target, &beside("pair.c")) else {
-            return;
-        };
-        let last = output.lines().last();
-        assert_eq!(last, Some(pair_of_rust().as_str()), "{target:?}: {output}");
+    for (target, said) in said_on_boards("pair.c") {
+        let last = said.lines().last();
+        assert_eq!(last, Some(pair_of_rust().as_str()), "{target:?}: {said}");
     }
 }
 
@@ -73,34 +71,28 @@ fn a_model_of_someone_elses_is_driven() {
     let Some(library) = built(Target::Host) else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("two_planes");
+    let folder = Folder::fresh();
+    let program = folder.at("two_planes");
     let sources = [capi().join("examples/two_planes.c")];
-    let Some(output) = host_program(&sources, &library, &program) else {
+    let Some(compiled) = host_program(&sources, &library, &program) else {
         return;
     };
-    good(&output);
-    let run = |blow: &str| -> Vec<(usize, bool)> {
-        let output = good(&Command::new(&program).arg(blow).output().unwrap());
-        let lines = output.lines().map(|line| {
+    compiled.good();
+    let run = |blow: &str| -> [(usize, bool); 2] {
+        let said = ran(Command::new(&program).arg(blow)).good();
+        let mut lines = said.lines().map(|line| {
             let (_, figures) = line.split_once(": ").unwrap();
             let (touches, _) = figures.split_once(' ').unwrap();
-            (
-                touches.parse().unwrap(),
-                figures.ends_with(" recovered") && !figures.contains("not "),
-            )
+            let recovered = figures.ends_with(" recovered") && !figures.contains("not ");
+            (touches.parse().unwrap(), recovered)
         });
-        lines.collect()
+        let two = [lines.next().unwrap(), lines.next().unwrap()];
+        assert_eq!(lines.next(), None);
+        two
     };
-    let [alone, supervised] = run("5")[..] else {
-        panic!("two lines")
-    };
-    assert!(
-        alone.1 && supervised.1 && supervised.0 < alone.0,
-        "{alone:?} {supervised:?}"
-    );
-    let [alone, supervised] = run("7")[..] else {
-        panic!("two lines")
-    };
+    let [alone, supervised] = run("5");
+    let fewer = alone.1 && supervised.1 && supervised.0 < alone.0;
+    assert!(fewer, "{alone:?} {supervised:?}");
+    let [alone, supervised] = run("7");
     assert!(!alone.1 && supervised.1, "{alone:?} {supervised:?}");
 }

@@ -1,45 +1,40 @@
 //! A header against a library of another version.
 
 use crate::library::{Target, beside, built, capi, host_program};
-use std::path::PathBuf;
-
-struct Attempt {
-    succeeded: bool,
-    stderr: String,
-}
+use supervisor_capi::layout::HEADER;
+use system_tests::ran::{Folder, Ran, edited, has};
 
 /// Compiles and links a program with a header that speaks `header`, where the library's version file
 /// says `library`. The library itself speaks the version of this source.
-fn attempt(header: u32, library: u32) -> Option<Attempt> {
+fn attempt(header: u32, library: u32) -> Option<Ran> {
     let built = built(Target::Host)?;
-    let folder = tempfile::tempdir().unwrap();
-    let text = supervisor_capi::layout::HEADER;
-    let version = format!("#define AMB_ABI {}\n", supervisor_capi::ABI);
-    assert!(text.contains(&version));
-    let changed = text.replace(&version, &format!("#define AMB_ABI {header}\n"));
-    std::fs::write(folder.path().join("amb_supervisor.h"), changed).unwrap();
+    let folder = Folder::fresh();
+    let version = |abi: u32| format!("#define AMB_ABI {abi}\n");
+    let own = version(supervisor_capi::ABI);
+    let changed = edited(HEADER, &[(&own, &version(header))]);
+    folder.put("amb_supervisor.h", changed);
     let version = format!("#define AMB_LIBRARY_ABI {library}\n");
-    std::fs::write(folder.path().join("amb_supervisor_abi.h"), version).unwrap();
-    let archive = "libsupervisor_capi.a";
-    std::fs::copy(built.join(archive), folder.path().join(archive)).unwrap();
+    folder.put("amb_supervisor_abi.h", version);
     // The compiler looks beside a source first: there the other header is.
-    let sources: [PathBuf; 2] = ["rig.c", "replay.c"].map(|name| folder.path().join(name));
     let example = capi().join("examples");
-    std::fs::copy(example.join("rig.h"), folder.path().join("rig.h")).unwrap();
-    std::fs::copy(example.join("rig.c"), &sources[0]).unwrap();
-    std::fs::copy(beside("replay.c"), &sources[1]).unwrap();
-    let output = host_program(&sources, folder.path(), &folder.path().join("program"))?;
-    Some(Attempt {
-        succeeded: output.status.success(),
-        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
-    })
+    for file in [
+        built.join("libsupervisor_capi.a"),
+        example.join("rig.h"),
+        example.join("rig.c"),
+        beside("replay.c"),
+    ] {
+        let name = file.file_name().unwrap().to_str().unwrap();
+        std::fs::copy(&file, folder.at(name)).unwrap();
+    }
+    let sources = ["rig.c", "replay.c"].map(|name| folder.at(name));
+    host_program(&sources, &folder.at("."), &folder.at("program"))
 }
 
 #[test]
 fn the_same_version_compiles_and_links() {
     let own = supervisor_capi::ABI;
     if let Some(attempt) = attempt(own, own) {
-        assert!(attempt.succeeded, "{}", attempt.stderr);
+        attempt.good();
     }
 }
 
@@ -52,9 +47,7 @@ fn another_version_does_not_compile() {
         let Some(attempt) = attempt(header, library) else {
             return;
         };
-        assert!(!attempt.succeeded);
-        let says = attempt.stderr.contains("are of different versions");
-        assert!(says, "{}", attempt.stderr);
+        has(&attempt.fails(1), &["are of different versions"]);
     }
 }
 
@@ -66,9 +59,7 @@ fn another_version_does_not_link() {
     let Some(attempt) = attempt(other, other) else {
         return;
     };
-    assert!(!attempt.succeeded);
-    let missing = format!("amb_tick_abi{other}");
-    assert!(attempt.stderr.contains(&missing), "{}", attempt.stderr);
+    has(&attempt.fails(1), &[&format!("amb_tick_abi{other}")]);
 }
 
 /// The build says of the library what the library says of itself.

@@ -13,8 +13,9 @@ mod warnings;
 
 use firmware_bench::advise::Advice;
 use firmware_bench::scene::suggest::Nominal;
-use std::process::Output;
-use system_tests::{host, scene};
+use std::f64::consts::TAU;
+use system_tests::ran::{Folder, Ran, has};
+use system_tests::scene;
 
 /// The AMB rotor of the theory chapter: 10 kg, −2e5 N/m, 0.2 mm, 1000 N, a 1 kHz amplifier, 20 kHz.
 fn amb() -> Nominal {
@@ -47,48 +48,28 @@ fn amb() -> Nominal {
     }
 }
 
-const AMB: [&str; 10] = [
-    "--mass-kg=10",
-    "--clearance-m=2e-4",
-    "--friction=0.15",
-    "--stiffness-n-m=-2e5",
-    "--contact-stiffness-n-m=1e9",
-    "--restitution=0.7",
-    "--force-max-n=1000",
-    "--lag-s=1.6e-4",
-    "--sample-rate-hz=20000",
-    "--noise-rms-m=1e-6",
-];
+const AMB: &str = "--mass-kg=10 --clearance-m=2e-4 --friction=0.15 --stiffness-n-m=-2e5 --contact-stiffness-n-m=1e9 \
+    --restitution=0.7 --force-max-n=1000 --lag-s=1.6e-4 --sample-rate-hz=20000 --noise-rms-m=1e-6";
 
 fn advice(nominal: &Nominal) -> Advice {
     Advice::new("test", nominal, &[]).unwrap()
 }
 
+#[track_caller]
 fn close(value: f64, by_hand: f64) {
-    assert!(
-        (value / by_hand - 1.0).abs() < 1e-6,
-        "{value}, by hand {by_hand}"
-    );
+    let off = value / by_hand - 1.0;
+    assert!(off.abs() < 1e-6, "{value}, by hand {by_hand}");
 }
 
-fn advise(args: &[&str]) -> Output {
-    let out = host().arg("advise").args(args).output();
-    out.expect("the host starts")
-}
-
-fn stderr(output: &Output) -> String {
-    crate::refusals::flat(&output.stderr)
+fn advise(words: &str) -> Ran {
+    Folder::fresh().ran(&format!("advise {words}"))
 }
 
 #[test]
 fn closed_forms_of_a_known_plant() {
     let a = advice(&amb());
     assert_eq!(a.limits.passive_threshold_m_s, None);
-    assert!(
-        a.limits
-            .passive_threshold_text
-            .contains("negative stiffness")
-    );
+    has(a.limits.passive_threshold_text, &["negative stiffness"]);
     close(a.limits.lift_off_m_s, (2e-4 * 960.0 / 10.0_f64).sqrt());
     // (4.12) on the orbit r = c + F/(μ·√(1 + μ²)·k_c).
     let tilt = (1.0 + 0.15_f64.powi(2)).sqrt();
@@ -96,10 +77,7 @@ fn closed_forms_of_a_known_plant() {
     let limit = (r / (0.15 * 10.0) * (1000.0 * tilt - 0.15 * 2e5 * r)).sqrt();
     close(a.limits.whirl_limit_m_s.unwrap(), limit);
     let omega = limit / r;
-    close(
-        a.limits.whirl_limit_hz.unwrap(),
-        omega / std::f64::consts::TAU,
-    );
+    close(a.limits.whirl_limit_hz.unwrap(), omega / TAU);
     // Without damping (4.13) with v_lim for v_T, and longer by about the yielding of the wall, 3.3 % of r at v_lim.
     let time = r / (0.15 * limit) * 0.85_f64.atanh();
     let longer = a.limits.arrest_time_s.unwrap() / time;
@@ -115,20 +93,16 @@ fn closed_forms_of_a_known_plant() {
     close(lag.friction_angle_deg, 8.530_765_609_948);
 
     let v = a.impact.unavoidable_m_s;
-    close(
-        v * v,
-        2.0 * 100.0 * (2e-4 - v * horizon) - 2e5 * 4e-8 / 10.0,
-    );
+    let stopped = 2.0 * 100.0 * (2e-4 - v * horizon) - 2e5 * 4e-8 / 10.0;
+    close(v * v, stopped);
     let k = 0.15 * 1.7 / 0.3;
-    assert!(
-        (a.impact.bounce_gain / k - 1.0).abs() < 1e-6,
-        "the restitution is an f32"
-    );
-    assert!((a.impact.all_bounces_m_s.unwrap() * k / limit - 1.0).abs() < 1e-6);
-    assert!((a.impact.first_m_s.unwrap() * 0.15 * 1.7 / limit - 1.0).abs() < 1e-6);
+    // The restitution is an f32.
+    close(a.impact.bounce_gain, k);
+    close(a.impact.all_bounces_m_s.unwrap() * k, limit);
+    close(a.impact.first_m_s.unwrap() * 0.15 * 1.7, limit);
     let v = a.impact.first_compliant_m_s.unwrap();
     let soft = 1.0 + std::f64::consts::FRAC_PI_4 * v / 2e-4 * 1e-4;
-    assert!((0.15 * 1.7 * v * soft / limit - 1.0).abs() < 1e-6);
+    close(0.15 * 1.7 * v * soft, limit);
     assert_eq!(a.impact.passive_m_s, None);
     assert!(a.noise.tolerable && a.noise.share < 0.04);
 }
@@ -138,12 +112,10 @@ fn closed_forms_of_a_known_plant() {
 fn a_shaft_gives_a_threshold() {
     let scene = scene("impact_at_40_hz");
     let a = advice(&scene.planes[0].nominal);
-    assert!((a.limits.passive_threshold_m_s.unwrap() - 0.0579).abs() < 5e-5);
+    let threshold_m_s = a.limits.passive_threshold_m_s.unwrap();
+    assert!((threshold_m_s - 0.0579).abs() < 5e-5);
     assert!((a.impact.passive_m_s.unwrap() - 0.082).abs() < 5e-4);
-    assert_eq!(
-        a.noise.reference_m_s,
-        a.limits.passive_threshold_m_s.unwrap()
-    );
+    assert_eq!(a.noise.reference_m_s, threshold_m_s);
 }
 
 /// Without friction nothing drives; with hardly any force nothing can be stopped.
@@ -167,22 +139,20 @@ fn what_has_no_limit_says_why() {
 /// What is called the most noise and the least rate is tolerable, and a little worse is not.
 #[test]
 fn the_noise_asked_for_is_enough_and_needed() {
-    let most = advice(&amb()).noise.sensor_noise_most_m.unwrap();
-    for (noise_rms_m, good) in [(most, true), (1.011 * most, false)] {
-        let noise = advice(&Nominal {
+    let noise = advice(&amb()).noise;
+    let most = noise.sensor_noise_most_m.unwrap();
+    let least = noise.sample_rate_least_hz.unwrap();
+    for (noise_rms_m, sample_rate_hz, good) in [
+        (most, 20e3, true),
+        (1.011 * most, 20e3, false),
+        (1e-6, least, true),
+        (1e-6, least / 1.011, false),
+    ] {
+        let n = Nominal {
             noise_rms_m,
-            ..amb()
-        })
-        .noise;
-        assert_eq!(noise.tolerable, good, "{noise_rms_m}");
-    }
-    let least = advice(&amb()).noise.sample_rate_least_hz.unwrap();
-    for (sample_rate_hz, good) in [(least, true), (least / 1.011, false)] {
-        let noise = advice(&Nominal {
             sample_rate_hz,
             ..amb()
-        })
-        .noise;
-        assert_eq!(noise.tolerable, good, "{sample_rate_hz}");
+        };
+        assert_eq!(advice(&n).noise.tolerable, good, "{n:?}");
     }
 }

@@ -5,7 +5,8 @@ use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::scene::Scene;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use system_tests::{root, scene_path};
+use system_tests::ran::Folder;
+use system_tests::root;
 
 /// The example with every table runs under each of its policies.
 #[test]
@@ -140,38 +141,22 @@ fn every_command_works_or_is_known() {
     pages(&root().join("docs/src"), &mut files);
     files.sort();
     // As in the project's folder, but that results go elsewhere.
-    let folder = tempfile::TempDir::new().unwrap();
-    let here = |name: &str| folder.path().join(name);
-    std::os::unix::fs::symlink(root().join("firmware-host"), here("firmware-host")).unwrap();
-    let scene = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let brief = scene.replace("duration_s = 0.2", "duration_s = 0.03");
-    std::fs::write(here("my_scene.toml"), brief).unwrap();
-    let run = |args: &str, more: &[&str]| {
-        let words = args.split(' ').chain(more.iter().copied());
-        let output = (system_tests::host().args(words))
-            .current_dir(folder.path())
-            .output()
-            .unwrap();
-        let shown = String::from_utf8_lossy(&output.stderr);
-        assert!(
-            output.status.success() && !output.stdout.is_empty(),
-            "{args}: {shown}"
-        );
+    let folder = Folder::fresh();
+    let project = root().join("firmware-host");
+    std::os::unix::fs::symlink(project, folder.at("firmware-host")).unwrap();
+    let brief = [("duration_s = 0.2", "duration_s = 0.03")];
+    folder.scene("my_scene.toml", "overload_then_release", &brief);
+    let run = |line: &str| {
+        let printed = folder.ran(line).good();
+        assert!(!printed.is_empty(), "{line}");
     };
-    run("run firmware-host/scenes/overload_then_release.toml", &[]);
-    std::fs::copy(
-        here("runs/overload_then_release/record_supervisor.bin"),
-        here("landing.bin"),
-    )
-    .unwrap();
-    let trace = "runs/overload_then_release/trace_supervisor";
-    run(&format!("export {trace}.parquet --to csv"), &[]);
-    let csv = std::fs::read_to_string(here(&format!("{trace}.csv"))).unwrap();
-    std::fs::write(
-        here("landing.csv"),
-        crate::review::logs::foreign(&csv, false),
-    )
-    .unwrap();
+    run("run firmware-host/scenes/overload_then_release.toml");
+    let runs = "runs/overload_then_release";
+    let record = folder.bytes(&format!("{runs}/record_supervisor.bin"));
+    folder.put("landing.bin", record);
+    run(&format!("export {runs}/trace_supervisor.parquet --to csv"));
+    let csv = folder.text(&format!("{runs}/trace_supervisor.csv"));
+    folder.put("landing.csv", crate::review::logs::foreign(&csv, false));
 
     let mut seen = BTreeSet::new();
     for file in files {
@@ -182,17 +167,14 @@ fn every_command_works_or_is_known() {
             }
             let Some(args) = command.strip_prefix("cargo run --release -- ") else {
                 let known = OTHERS.iter().any(|(start, _)| command.starts_with(start));
-                assert!(
-                    known || command.starts_with("LIBRARY="),
-                    "{}: {command}",
-                    file.display()
-                );
+                let known = known || command.starts_with("LIBRARY=");
+                assert!(known, "{}: {command}", file.display());
                 continue;
             };
             let only_parsed = ONLY_PARSED.iter().any(|(start, _)| args.starts_with(start));
             match only_parsed || (args.contains("python") && !python()) {
-                true => run(args, &["--help"]),
-                false => run(args, &[]),
+                true => run(&format!("{args} --help")),
+                false => run(args),
             }
         }
     }

@@ -5,37 +5,24 @@ mod rotor;
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
-use system_tests::{host, machine_scene_path, python, root, run_scene, scene_path};
-use tempfile::TempDir;
+use std::process::Command;
+use system_tests::ran::{Folder, has, ran};
+use system_tests::{python, root, scene_path};
 
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
+pub(crate) fn text(path: &Path) -> String {
+    path.to_str().unwrap().to_owned()
 }
 
-fn fmu(scene: &Path, out: &Path, more: &[&str]) -> Output {
-    let mut fmu = host();
-    fmu.arg("fmu").arg(scene).arg("--out").arg(out).args(more);
-    fmu.output().unwrap()
-}
-
-fn units(scene: &Path, out: &Path, version: &str) {
-    let output = fmu(scene, out, &["--fmi", version]);
-    let shown = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{shown}");
+fn units(folder: &Folder, scene: &str, version: &str) {
+    folder
+        .ran(&format!("fmu {scene} --out . --fmi {version}"))
+        .good();
 }
 
 /// Runs a Python program that fails where something does not hold.
 pub(crate) fn checked(python: &Path, program: &str, arguments: &[&str]) -> String {
-    let program = root().join(program);
-    let output = Command::new(python)
-        .arg(program)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let shown = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}\n{shown}");
-    String::from_utf8(output.stdout).unwrap()
+    let mut python = Command::new(python);
+    ran(python.arg(root().join(program)).args(arguments)).good()
 }
 
 const CHECKS: &str = "tests/python/fmu_units.py";
@@ -44,28 +31,15 @@ const CHECKS: &str = "tests/python/fmu_units.py";
 #[test]
 fn units_are_valid_and_their_closed_loop_is_the_native_run() {
     let Some(python) = python() else { return };
-    let machine = machine_scene_path("overload_of_a_flexible_rotor");
-    let cases = [
-        (
-            scene_path("impact_at_40_hz"),
-            ["3.0", "2.0"].as_slice(),
-            ["supervisor", "passive"].as_slice(),
-            [""].as_slice(),
-        ),
-        (
-            machine,
-            &["3.0"],
-            &["supervisor"],
-            &["_far_end", "_coupling_end"],
-        ),
-    ];
-    for (scene, versions, policies, planes) in cases {
-        let folder = TempDir::new().unwrap();
-        let ran = run_scene(&scene, folder.path(), &[]);
-        assert!(ran.status.success());
+    let flexible = "@machines/overload_of_a_flexible_rotor";
+    let point: [&[&str]; 3] = [&["3.0", "2.0"], &["supervisor", "passive"], &[""]];
+    let rotor: [&[&str]; 3] = [&["3.0"], &["supervisor"], &["_far_end", "_coupling_end"]];
+    for (scene, [versions, policies, planes]) in [("@impact_at_40_hz", point), (flexible, rotor)] {
+        let folder = Folder::fresh();
+        folder.ran(&format!("run {scene} --out .")).good();
         for version in versions {
-            units(&scene, folder.path(), version);
-            let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+            units(&folder, scene, version);
+            let file = |name: &str| text(&folder.at(name));
             let all =
                 ["plant", "supervisor", "closed_loop"].map(|name| file(&format!("{name}.fmu")));
             let [plant, supervisor, closed_loop] = all.each_ref().map(String::as_str);
@@ -75,8 +49,8 @@ fn units_are_valid_and_their_closed_loop_is_the_native_run() {
                 let traces: Vec<String> = planes.iter().map(trace).collect();
                 let mut arguments = vec!["equal", closed_loop, policy];
                 arguments.extend(traces.iter().map(String::as_str));
-                let shown = checked(&python, CHECKS, &arguments);
-                assert!(shown.contains("columns the same"), "{shown}");
+                let said = checked(&python, CHECKS, &arguments);
+                has(&said, &["columns the same"]);
             }
         }
     }
@@ -86,61 +60,55 @@ fn units_are_valid_and_their_closed_loop_is_the_native_run() {
 #[test]
 fn plant_and_supervisor_close_with_a_controller_in_python() {
     let Some(python) = python() else { return };
-    let scene = scene_path("controllers/pid_in_python");
-    let folder = TempDir::new().unwrap();
-    let out = text(folder.path());
-    units(&scene, folder.path(), "3.0");
-    let ran = run_scene(&scene, folder.path(), &[]);
-    assert!(ran.status.success());
+    let folder = Folder::fresh();
+    let file = |name: &str| text(&folder.at(name));
+    units(&folder, "@controllers/pid_in_python", "3.0");
+    folder.ran("run @controllers/pid_in_python --out .").good();
     // The closed loop starts the Python that travels with it.
-    let file = |name: &str| folder.path().join(name);
     let (unit, trace) = (file("closed_loop.fmu"), file("trace_supervisor.parquet"));
-    let arguments = ["equal", text(&unit), "supervisor", text(&trace)];
-    checked(&python, CHECKS, &arguments);
+    checked(&python, CHECKS, &["equal", &unit, "supervisor", &trace]);
     let example = "firmware-host/fmu/examples/own_controller.py";
     for (policy, more) in [("levitation", None), ("supervisor", Some("--supervised"))] {
-        let arguments: Vec<&str> = std::iter::once(out).chain(more).collect();
-        let positions = checked(&python, example, &arguments);
-        let csv = folder.path().join("positions.csv");
-        fs::write(&csv, positions).unwrap();
-        let trace = folder.path().join(format!("trace_{policy}.parquet"));
-        let arguments = ["positions", text(&csv), text(&trace)];
-        let shown = checked(&python, CHECKS, &arguments);
-        assert!(shown.contains("2000 positions the same"), "{shown}");
+        let out = file(".");
+        let arguments: Vec<&str> = std::iter::once(&out[..]).chain(more).collect();
+        folder.put("positions.csv", checked(&python, example, &arguments));
+        let trace = file(&format!("trace_{policy}.parquet"));
+        let arguments = ["positions", &file("positions.csv"), &trace];
+        let said = checked(&python, CHECKS, &arguments);
+        has(&said, &["2000 positions the same"]);
     }
 }
 
 #[test]
 fn mistakes_end_in_errors_with_their_text_in_the_log() {
     let Some(python) = python() else { return };
-    let folder = TempDir::new().unwrap();
-    units(&scene_path("impact_at_40_hz"), folder.path(), "3.0");
-    let plant = folder.path().join("plant.fmu");
-    checked(&python, CHECKS, &["errors", text(&plant)]);
-    let shown = checked(&python, CHECKS, &["early", text(&plant)]);
-    assert!(shown.contains("early returns"), "{shown}");
+    let folder = Folder::fresh();
+    units(&folder, "@impact_at_40_hz", "3.0");
+    let plant = text(&folder.at("plant.fmu"));
+    checked(&python, CHECKS, &["errors", &plant]);
+    let said = checked(&python, CHECKS, &["early", &plant]);
+    has(&said, &["early returns"]);
 }
 
 /// Parameters that are set in a unit are those of `run --set`.
 #[test]
 fn parameters_of_a_unit_are_keys_of_its_scene() {
     let Some(python) = python() else { return };
-    let scene = scene_path("impact_at_40_hz");
-    let folder = TempDir::new().unwrap();
-    units(&scene, folder.path(), "3.0");
+    let folder = Folder::fresh();
+    units(&folder, "@impact_at_40_hz", "3.0");
     let set = [
         "friction.coefficient=0.11",
         "supervisor.hold_share=0.31",
         "run.seed=5",
         "sensor.noise_rms_m=1e-6",
     ];
-    let with: Vec<&str> = set.iter().flat_map(|one| ["--set", one]).collect();
-    assert!(run_scene(&scene, folder.path(), &with).status.success());
-    let (unit, trace) = (
-        folder.path().join("closed_loop.fmu"),
-        folder.path().join("trace_supervisor.parquet"),
-    );
-    let mut arguments = vec!["equal", text(&unit), "supervisor", text(&trace)];
+    let with = set.map(|one| format!(" --set {one}")).concat();
+    folder
+        .ran(&format!("run @impact_at_40_hz --out .{with}"))
+        .good();
+    let [unit, trace] =
+        ["closed_loop.fmu", "trace_supervisor.parquet"].map(|name| text(&folder.at(name)));
+    let mut arguments = vec!["equal", &unit, "supervisor", &trace];
     arguments.extend(set);
     checked(&python, CHECKS, &arguments);
 }
@@ -148,32 +116,34 @@ fn parameters_of_a_unit_are_keys_of_its_scene() {
 /// The same scene gives the same bytes, files that it names travel along, and a scene that is wrong leaves nothing.
 #[test]
 fn archives_are_the_same_bytes_and_whole_or_not_there() {
-    let folder = TempDir::new().unwrap();
-    let scene = scene_path("controllers/pid_in_python");
-    let (first, second) = (folder.path().join("a"), folder.path().join("b"));
-    units(&scene, &first, "3.0");
-    units(&scene, &second, "3.0");
+    let [folder, again] = [Folder::fresh(), Folder::fresh()];
+    let pid = "controllers/pid_in_python";
+    for folder in [&folder, &again] {
+        units(folder, &format!("@{pid}"), "3.0");
+    }
     for name in ["plant.fmu", "supervisor.fmu", "closed_loop.fmu"] {
-        let [a, b] = [&first, &second].map(|folder| fs::read(folder.join(name)).unwrap());
+        let [a, b] = [&folder, &again].map(|folder| folder.bytes(name));
         assert!(a == b, "{name}");
         let mut archive = zip::ZipArchive::new(std::io::Cursor::new(a)).unwrap();
         let mut resource = |name: &str| {
             let file = archive.by_name(&format!("resources/{name}")).unwrap();
             std::io::read_to_string(file).unwrap()
         };
-        assert!(resource("scene.toml").contains("python = \"1_pid.py\""));
-        let pid = scene.with_file_name("pid.py");
-        assert_eq!(resource("1_pid.py"), fs::read_to_string(pid).unwrap());
+        has(&resource("scene.toml"), &["python = \"1_pid.py\""]);
+        let own = fs::read_to_string(scene_path(pid).with_file_name("pid.py"));
+        assert_eq!(resource("1_pid.py"), own.unwrap());
     }
-    let wrong = folder.path().join("wrong.toml");
-    let of = fs::read_to_string(scene_path("impact_at_40_hz")).unwrap();
-    fs::write(&wrong, of.replace("mass_kg = 10.0", "mass_kg = -10.0")).unwrap();
-    let nowhere = folder.path().join("c");
-    let output = fmu(&wrong, &nowhere, &[]);
-    assert_eq!(output.status.code(), Some(2));
-    let shown = String::from_utf8_lossy(&output.stderr);
-    assert!(shown.contains("mass_kg") && !nowhere.exists(), "{shown}");
-    let output = fmu(&scene, &nowhere, &["--library", "nowhere.so"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(!nowhere.exists());
+    let wrong = [("mass_kg = 10.0", "mass_kg = -10.0")];
+    folder.scene("wrong.toml", "impact_at_40_hz", &wrong);
+    for (line, says) in [
+        ("wrong.toml", "mass_kg"),
+        (
+            "@controllers/pid_in_python --library nowhere.so",
+            "nowhere.so",
+        ),
+    ] {
+        let said = folder.ran(&format!("fmu {line} --out none")).fails(2);
+        has(&said, &[says]);
+        assert!(!folder.at("none").exists());
+    }
 }

@@ -1,13 +1,9 @@
 //! `init --shaft-file`: a drawing's list of steps becomes a scene with the frequencies of that shaft.
 
-use crate::refusals::{all, flat};
-use serde_json::Value;
+use crate::init::{init, judged, recovers};
+use crate::refusals::all;
 use std::f64::consts::{PI, TAU};
-use std::fs;
-use std::path::Path;
-use std::process::{Output, Stdio};
-use system_tests::{host, run_scene};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, edited, has, list};
 
 /// Without a magnet's stiffness: `modes` is then of the free shaft.
 const NUMBERS: &str = "--sample-rate-hz 20000 --stiffness-n-m 0 --clearance-m 2e-4 --contact-stiffness-n-m 3e8 \
@@ -30,15 +26,6 @@ const WHEEL_KG: f64 = 12.0;
 const WHEEL_TRANSVERSE_KG_M2: f64 = 0.05;
 const WHEEL_POLAR_KG_M2: f64 = 0.09;
 
-fn init(file: &Path, numbers: &str, shaft: Option<&Path>) -> Output {
-    let mut init = host();
-    init.arg("init").arg(file).args(numbers.split_whitespace());
-    if let Some(shaft) = shaft {
-        init.arg("--shaft-file").arg(shaft);
-    }
-    init.stdin(Stdio::null()).output().expect("the host starts")
-}
-
 fn wheel_csv() -> String {
     let head = "# steps from left to right\nlength_m,outer_diameter_m,disc_mass_kg,disc_transverse_inertia_kg_m2,disc_polar_inertia_kg_m2\n";
     let rows = STEPS_M.iter().enumerate().map(|(i, (length, diameter))| {
@@ -52,13 +39,11 @@ fn wheel_csv() -> String {
 }
 
 /// Frequencies at standstill that are no rigid motion \[Hz\], one of each two.
-fn bending_hz(scene: &Path) -> Vec<f64> {
-    let output = host()
-        .args(["modes", "--json", "--points", "2"])
-        .arg(scene)
-        .output();
-    let value: Value = serde_json::from_slice(&output.unwrap().stdout).unwrap();
-    let modes = value["modes"].as_array().unwrap().iter();
+fn bending_hz(folder: &Folder, scene: &str) -> Vec<f64> {
+    let told = folder
+        .ran(&format!("modes --json --points 2 {scene}"))
+        .json();
+    let modes = list(&told["modes"]).iter();
     let still = modes.filter(|mode| mode["spin_rad_s"] == 0.0 && mode["whirl"] == "forward");
     let all = still.filter_map(|mode| mode["frequency_hz"].as_f64());
     all.filter(|hz| *hz > 10.0).collect()
@@ -140,55 +125,39 @@ fn exact_hz(count: usize) -> Vec<f64> {
 /// Three frequencies of a stepped shaft with a wheel agree with Timoshenko's beam, solved exactly; mass and loop are right.
 #[test]
 fn a_stepped_shaft_has_its_frequencies_and_a_loop() {
-    let folder = TempDir::new().unwrap();
-    let (file, steps) = (
-        folder.path().join("a.toml"),
-        folder.path().join("steps.csv"),
-    );
-    fs::write(&steps, wheel_csv()).unwrap();
-    let numbers = format!("{NUMBERS} --bearings-m 0.1,0.7 --gravity-m-s2 9.81");
-    let written = init(&file, &numbers, Some(&steps));
-    let error = String::from_utf8_lossy(&written.stderr).into_owned();
-    assert!(written.status.success(), "{error}");
-    let (found, exact) = (bending_hz(&file), exact_hz(3));
+    let folder = Folder::fresh();
+    folder.put("steps.csv", wheel_csv());
+    let places = "--bearings-m 0.1,0.7 --gravity-m-s2 9.81 --shaft-file steps.csv";
+    let numbers = format!("{NUMBERS} {places}");
+    init(&folder, "a.toml", &numbers).good();
+    let (found, exact) = (bending_hz(&folder, "a.toml"), exact_hz(3));
     assert!((300.0..600.0).contains(&exact[0]), "{exact:?}");
     for (found, exact) in found.iter().zip(&exact) {
         // The damping ratio of 0.002 alone makes 2e-6.
         assert!((found / exact - 1.0).abs() < 1e-5, "{found} {exact}");
     }
-    let text = fs::read_to_string(&file).unwrap();
-    assert!(
-        text.contains("position_m = 0.4\nmass_kg = 12.0\n"),
-        "{text}"
-    );
+    let text = folder.text("a.toml");
+    has(&text, &["position_m = 0.4\nmass_kg = 12.0\n"]);
     // That of the shaft at each bearing.
-    assert!(
-        text.contains("\ncontact_radius_m = 0.02\n")
-            && text.contains("\ncontact_radius_m = 0.025\n")
+    has(
+        &text,
+        &[
+            "\ncontact_radius_m = 0.02\n",
+            "\ncontact_radius_m = 0.025\n",
+        ],
     );
-    assert!(text.contains("gravity_m_s2 = [0.0, -9.81]"), "{text}");
+    has(&text, &["gravity_m_s2 = [0.0, -9.81]"]);
 
-    let judged = host()
-        .args(["modes", "--levitated", "--points", "2", "--json"])
-        .arg(&file)
-        .output()
-        .unwrap();
-    let judged: Value = serde_json::from_slice(&judged.stdout).unwrap();
-    assert_eq!(judged["stable"], true);
-    let ran = run_scene(&file, &folder.path().join("out"), &["--json", "--no-trace"]);
-    let verdict: Value = serde_json::from_slice(&ran.stdout).unwrap();
-    assert_eq!(verdict["policies"]["supervisor"]["outcome"], "recovered");
+    judged(&folder, "a.toml");
+    recovers(&folder, "a.toml");
     // It falls away before so late a force can come: no file then.
-    let late = numbers.replace("--lag-s 1e-4", "--lag-s 5e-3");
-    let late = late.replace("--stiffness-n-m 0", "--stiffness-n-m -3e6");
-    let none = folder.path().join("none.toml");
-    let refused = init(&none, &late, Some(&steps));
-    let error = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert_eq!(refused.status.code(), Some(2), "{error}");
-    assert!(
-        error.contains("no levitation controller") && !none.exists(),
-        "{error}"
-    );
+    let late = [
+        ("--lag-s 1e-4", "--lag-s 5e-3"),
+        ("--stiffness-n-m 0", "--stiffness-n-m -3e6"),
+    ];
+    let refused = init(&folder, "none.toml", &edited(&numbers, &late)).fails(2);
+    has(&refused, &["no levitation controller"]);
+    assert!(!folder.at("none.toml").exists());
 }
 
 /// In five pieces, as columns in another order between semicolons, it is the shaft of one diameter, and slender enough for
@@ -197,31 +166,20 @@ fn a_stepped_shaft_has_its_frequencies_and_a_loop() {
 fn a_uniform_shaft_in_pieces_is_the_uniform_shaft() {
     const LENGTH_M: f64 = 1.2;
     const DIAMETER_M: f64 = 0.02;
-    let folder = TempDir::new().unwrap();
-    let [whole, cut] = ["whole.toml", "cut.toml"].map(|name| folder.path().join(name));
-    let steps = folder.path().join("steps.csv");
+    let folder = Folder::fresh();
     let rows = [0.1, 0.3, 0.25, 0.35, 0.2].map(|l| format!("{DIAMETER_M};{l};2.1e11\r\n"));
     let text = "\u{feff}outer_diameter_m;length_m;youngs_modulus_n_m2\r\n".to_owned();
-    fs::write(&steps, text + &rows.concat()).unwrap();
-    let mass_kg = PI / 4.0 * DIAMETER_M.powi(2) * LENGTH_M * DENSITY_KG_M3;
-    let numbers = NUMBERS.replace("900", "60");
-    let by_numbers = format!(
-        "{numbers} --bearings-m -0.5,0.5 --length-m {LENGTH_M} --shaft-diameter-m {DIAMETER_M} --mass-kg {}",
-        mass_kg * (1.0 + 1e-12)
+    folder.put("steps.csv", text + &rows.concat());
+    let mass_kg = PI / 4.0 * DIAMETER_M.powi(2) * LENGTH_M * DENSITY_KG_M3 * (1.0 + 1e-12);
+    let uniform = format!(
+        "--bearings-m -0.5,0.5 --length-m {LENGTH_M} --shaft-diameter-m {DIAMETER_M} --mass-kg {mass_kg}"
     );
-    for (file, numbers, shaft) in [
-        (&whole, by_numbers, None),
-        (
-            &cut,
-            format!("{numbers} --bearings-m 0.1,1.1"),
-            Some(steps.as_path()),
-        ),
-    ] {
-        let written = init(file, &numbers, shaft);
-        let error = String::from_utf8_lossy(&written.stderr).into_owned();
-        assert!(written.status.success(), "{error}");
-    }
-    let (whole, cut) = (bending_hz(&whole), bending_hz(&cut));
+    let pieces = "--bearings-m 0.1,1.1 --shaft-file steps.csv";
+    let [whole, cut] = [("whole.toml", &uniform[..]), ("cut.toml", pieces)].map(|(file, more)| {
+        let numbers = NUMBERS.replace("900", "60");
+        init(&folder, file, &format!("{numbers} {more}")).good();
+        bending_hz(&folder, file)
+    });
     let euler = |beta_l: f64| {
         let radius_of_gyration = 0.25 * DIAMETER_M;
         (beta_l / LENGTH_M).powi(2)
@@ -237,31 +195,29 @@ fn a_uniform_shaft_in_pieces_is_the_uniform_shaft() {
 
 #[test]
 fn a_file_that_is_no_shaft_is_refused_by_line_and_column() {
-    let folder = TempDir::new().unwrap();
-    let (file, steps) = (
-        folder.path().join("a.toml"),
-        folder.path().join("steps.csv"),
-    );
+    let folder = Folder::fresh();
     let good = wheel_csv();
     let many = "length_m,outer_diameter_m\n".to_owned() + &"0.01,0.05\n".repeat(201);
     let numbers = format!("{NUMBERS} --bearings-m 0.1,0.7");
-    let refused = |numbers: &str, steps: &Path| {
-        let refused = init(&file, numbers, Some(steps));
-        let said = flat(&refused.stderr);
-        assert_eq!(refused.status.code(), Some(2), "{numbers}: {said}");
-        assert!(!file.exists(), "{numbers}");
+    let refused = |numbers: &str, steps: &str| {
+        let said = init(
+            &folder,
+            "a.toml",
+            &format!("{numbers} --shaft-file {steps}"),
+        )
+        .fails(2);
+        assert!(!folder.at("a.toml").exists(), "{numbers}");
         said
     };
     let of_file = |text: &str, _: &[String]| {
-        fs::write(&steps, text).unwrap();
-        refused(&numbers, &steps)
+        folder.put("steps.csv", text);
+        refused(&numbers, "steps.csv")
     };
     all("files/shaft", 13, &good, of_file);
-    let said = of_file(&many, &[]);
-    assert!(said.contains("more than 200 sections"), "{said}");
-    fs::write(&steps, &good).unwrap();
+    has(&of_file(&many, &[]), &["more than 200 sections"]);
+    folder.put("steps.csv", &good);
     all("files/numbers_beside_a_shaft", 5, &numbers, |line, _| {
-        refused(line, &steps)
+        refused(line, "steps.csv")
     });
-    refused(&numbers, folder.path());
+    refused(&numbers, ".");
 }

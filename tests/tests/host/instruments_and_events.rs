@@ -30,22 +30,15 @@ fn free_rotor() -> Scene {
 
 fn ridden(scene: &Scene, kind: PolicyKind) -> (Figures, Trace) {
     let (verdict, trace) = run(scene, kind, Keep::Trace, &mut |_| {}).unwrap();
-    assert!(
-        verdict.energy_residual < 1e-8,
-        "{}",
-        verdict.energy_residual
-    );
+    let residual = verdict.energy_residual;
+    assert!(residual < 1e-8, "{residual}");
     (verdict, trace)
 }
 
 /// Rows at control samples.
 fn samples(trace: &Trace) -> Vec<TraceRow> {
-    trace
-        .rows
-        .iter()
-        .filter(|r| !r.mode_change)
-        .copied()
-        .collect()
+    let rows = trace.rows.iter().filter(|r| !r.mode_change);
+    rows.copied().collect()
 }
 
 fn last(trace: &Trace) -> TraceRow {
@@ -53,10 +46,9 @@ fn last(trace: &Trace) -> TraceRow {
 }
 
 fn near(what: &str, found: f64, expected: f64, relative: f64) {
-    assert!(
-        (found - expected).abs() <= relative * expected.abs().max(f64::MIN_POSITIVE),
-        "{what}: {found:e}, expected {expected:e}"
-    );
+    let most = relative * expected.abs().max(f64::MIN_POSITIVE);
+    let same = (found - expected).abs() <= most;
+    assert!(same, "{what}: {found:e}, expected {expected:e}");
 }
 
 fn apart(a: V2, b: V2) -> f64 {

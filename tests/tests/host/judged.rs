@@ -1,20 +1,14 @@
 //! What a run is said to have come to, at the edges of its definitions.
 
+use crate::closed_loop::verdict;
 use firmware_bench::device::axis::Axis;
 use firmware_bench::device::loads::{Disturbance, TimedChange};
 use firmware_bench::device::sensor_fault::{Fault, FaultKind};
-use firmware_bench::run::closed_loop::{Keep, run};
-use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome;
-use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::params::SlidingFriction;
 use plant_model::{Change, V2};
 use system_tests::scene;
-
-fn verdict(scene: &Scene, policy: PolicyKind) -> Figures {
-    run(scene, policy, Keep::Verdict, &mut |_| {}).unwrap().0
-}
 
 /// A rotor that slides round the wall without friction, pressed by the magnets, neither rests nor bounces.
 #[test]

@@ -4,22 +4,16 @@ use serde_json::Value;
 use spdx::{Expression, ParseMode};
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
+use system_tests::ran::ran;
 use system_tests::root;
 
 /// Packages of the workspace and what they depend on, on this machine.
 pub(crate) fn metadata() -> Value {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.args(["metadata", "--format-version", "1", "--offline", "--locked"]);
-    let host = Command::new("rustc")
-        .args(["--print", "host-tuple"])
-        .output()
-        .unwrap();
-    let host = String::from_utf8(host.stdout).unwrap();
+    cargo.args("metadata --format-version 1 --offline --locked".split(' '));
+    let host = ran(Command::new("rustc").args(["--print", "host-tuple"])).good();
     cargo.args(["--filter-platform", host.trim()]);
-    let output = cargo.current_dir(root()).output().unwrap();
-    let shown = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{shown}");
-    serde_json::from_slice(&output.stdout).unwrap()
+    ran(cargo.current_dir(root())).json()
 }
 
 fn text<'a>(value: &'a Value, key: &str) -> &'a str {

@@ -2,7 +2,7 @@
 
 mod bearings;
 mod changes;
-mod files;
+pub(crate) mod files;
 mod in_turn;
 mod levitated;
 mod modes;
@@ -11,13 +11,11 @@ mod seals;
 
 use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
 use firmware_bench::run::figures::Figures;
-use firmware_bench::run::trace::{Recorder, Trace};
+use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use serde_json::Value;
-use std::fs;
-use system_tests::{machine_scene_names, machine_scene_path, root, run_scene};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, edited, has, lacks, list, number};
+use system_tests::{machine_scene_names, scene};
 
 /// A magnetic bearing with everything that one plane may have and a whole rotor as well.
 const ONE_PLANE: &str = r#"
@@ -91,15 +89,12 @@ known = true
 
 /// The same as the only plane of a rotor, at its centre of mass.
 fn as_machine() -> String {
-    ONE_PLANE
-        .replace(
-            "mass_kg = 10.0\n",
-            "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.3\npolar_inertia_kg_m2 = 0.05\n",
-        )
-        .replace(
-            "[[disturbance]]",
-            "[[plane]]\nname = \"middle\"\nposition_m = 0.0\n[[disturbance]]",
-        )
+    let inertias = "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.3\npolar_inertia_kg_m2 = 0.05\n";
+    let plane = "[[plane]]\nname = \"middle\"\nposition_m = 0.0\n[[disturbance]]";
+    edited(
+        ONE_PLANE,
+        &[("mass_kg = 10.0\n", inertias), ("[[disturbance]]", plane)],
+    )
 }
 
 fn machine(text: &str) -> Scene {
@@ -109,16 +104,10 @@ fn machine(text: &str) -> Scene {
 /// Figures and rows of each plane.
 fn planes(scene: &Scene, kind: PolicyKind) -> Vec<(Figures, Trace)> {
     let mut traces = vec![Trace::default(); scene.planes.len()];
-    let recorders = Recorders {
-        planes: traces.iter_mut().map(|t| t as &mut dyn Recorder).collect(),
-        axis: None,
-    };
+    let recorders = Recorders::of_planes(&mut traces);
     let ended = record(scene, kind, recorders, Accuracy::default(), &mut |_| {}).unwrap();
-    ended
-        .into_iter()
-        .map(|(figures, _)| figures)
-        .zip(traces)
-        .collect()
+    let figures = ended.into_iter().map(|(figures, _)| figures);
+    figures.zip(traces).collect()
 }
 
 /// Largest distance at a sample between two runs \[clearances\].
@@ -138,41 +127,28 @@ fn apart(a: &Trace, b: &Trace) -> f64 {
 /// Sensor, amplifier, loads, faults, controller, supervisor: all of a closed loop is the same around both plants.
 #[test]
 fn the_only_plane_of_a_rotor_is_a_scene_of_one_plane() {
-    let (one, whole) = (
-        Scene::parse("test", ONE_PLANE).unwrap(),
-        machine(&as_machine()),
-    );
+    let (one, whole) = (machine(ONE_PLANE), machine(&as_machine()));
     let [of_whole, of_one] = [&whole, &one].map(|scene| &scene.planes[0]);
     assert_eq!(of_whole.nominal.mass_kg, of_one.nominal.mass_kg);
     assert_eq!(of_whole.nominal.load_n, of_one.nominal.load_n);
     assert_eq!(of_whole.supervisor, of_one.supervisor);
-    for kind in [
-        PolicyKind::Passive,
-        PolicyKind::Levitation,
-        PolicyKind::Supervisor,
+    // A force that a reading has rounded otherwise is another force.
+    for (kind, most) in [
+        (PolicyKind::Passive, 1e-10),
+        (PolicyKind::Levitation, 1e-7),
+        (PolicyKind::Supervisor, 1e-7),
     ] {
         let (figures, trace) = run(&one, kind, Keep::Trace, &mut |_| {}).unwrap();
         let (of_plane, rows) = planes(&whole, kind).pop().unwrap();
         let apart = apart(&trace, &rows);
-        // A force that a reading has rounded otherwise is another force.
-        let most = if kind == PolicyKind::Passive {
-            1e-10
-        } else {
-            1e-7
-        };
         assert!(apart < most, "{}: {apart:e}", kind.name());
         assert!(figures.impacts > 0);
-        assert_eq!(
-            (figures.impacts, figures.outcome),
-            (of_plane.impacts, of_plane.outcome)
-        );
-        let forces = [figures.peak_contact_force_n, of_plane.peak_contact_force_n];
-        assert!((forces[0] / forces[1] - 1.0).abs() < 1e-5, "{forces:?}");
-        let impulses = [figures.contact_impulse_n_s, of_plane.contact_impulse_n_s];
-        assert!(
-            (impulses[0] / impulses[1] - 1.0).abs() < 1e-5,
-            "{impulses:?}"
-        );
+        let ended = |of: &Figures| (of.impacts, of.outcome);
+        assert_eq!(ended(&figures), ended(&of_plane));
+        let pushed = |of: &Figures| [of.peak_contact_force_n, of.contact_impulse_n_s];
+        for (a, b) in pushed(&figures).iter().zip(pushed(&of_plane)) {
+            assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
+        }
     }
 }
 
@@ -217,29 +193,15 @@ fn ends_at_the_centres_of_percussion_do_not_feel_each_other() {
     assert!((mass_kg - 6.0).abs() < 1e-12, "{mass_kg}");
     let ended = planes(&scene, PolicyKind::Passive);
     assert!(ended[0].0.impacts > 3 && ended[1].0.impacts == 0);
-    let moved = ended[1]
-        .1
-        .rows
-        .iter()
-        .map(|row| row.plant.position_m.norm());
+    let moved = ended[1].1.rows.iter();
+    let moved = moved.map(|row| row.plant.position_m.norm());
     assert!(moved.fold(0.0, f64::max) < 1e-11 * 2e-4);
-    let alone = TWO_PLANES
-        .split("[[plane]]")
-        .next()
-        .unwrap()
-        .replace("mass_kg = 10.0", "mass_kg = 6.0\ncontact_radius_m = 0.05")
-        .replace(
-            "transverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.0\n",
-            "",
-        )
-        + "[start]\nvelocity_m_s = [0.1, 0.02]\n";
-    let (_, trace) = run(
-        &Scene::parse("test", &alone).unwrap(),
-        PolicyKind::Passive,
-        Keep::Trace,
-        &mut |_| {},
-    )
-    .unwrap();
+    let inertias = "transverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.0\n";
+    let lighter = "mass_kg = 6.0\ncontact_radius_m = 0.05";
+    let (one_plane, _) = TWO_PLANES.split_once("[[plane]]").unwrap();
+    let one_plane = edited(one_plane, &[("mass_kg = 10.0", lighter), (inertias, "")]);
+    let alone = machine(&(one_plane + "[start]\nvelocity_m_s = [0.1, 0.02]\n"));
+    let (_, trace) = run(&alone, PolicyKind::Passive, Keep::Trace, &mut |_| {}).unwrap();
     let apart = apart(&trace, &ended[0].1);
     assert!(apart < 1e-7, "{apart:e}");
 }
@@ -264,45 +226,35 @@ fn a_start_may_be_given_by_planes_or_by_centre_and_tilt() {
 
 #[test]
 fn what_is_written_and_printed_has_every_plane() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    let scene = folder.path().join("scene.toml");
-    let text = as_machine().replace(
-        "position_m = 0.0",
-        "position_m = 0.1\n[[plane]]\nname = \"the other\"\nposition_m = -0.15",
-    );
-    fs::write(
-        &scene,
-        text.replace("duration_s = 0.12", "duration_s = 0.11"),
-    )
-    .unwrap();
-    let result = run_scene(&scene, &out, &["--json", "--verify"]);
-    let errors = String::from_utf8_lossy(&result.stderr);
-    assert!(result.status.success(), "{errors}");
-    let verdict: Value = serde_json::from_slice(&result.stdout).unwrap();
+    let folder = Folder::fresh();
+    let other = "position_m = 0.1\n[[plane]]\nname = \"the other\"\nposition_m = -0.15";
+    let edits = [
+        ("position_m = 0.0", other),
+        ("duration_s = 0.12", "duration_s = 0.11"),
+    ];
+    let text = edited(&as_machine(), &edits);
+    folder.put("scene.toml", &text);
+    let verdict = folder
+        .ran("run scene.toml --out out --json --verify")
+        .json();
     for policy in ["levitation", "supervisor"] {
         let of = &verdict["policies"][policy];
-        let planes = of["planes"].as_array().unwrap();
-        let names: Vec<_> = planes.iter().map(|p| p["name"].as_str().unwrap()).collect();
-        assert_eq!(names, ["middle", "the other"]);
+        let planes = list(&of["planes"]);
+        let names = planes.iter().map(|p| p["name"].as_str().unwrap());
+        assert!(names.eq(["middle", "the other"]));
         let sum: u64 = planes.iter().map(|p| p["impacts"].as_u64().unwrap()).sum();
-        assert_eq!(of["impacts"].as_u64().unwrap(), sum);
-        assert!(
-            of["verification"]["estimated_error_clearances"]
-                .as_f64()
-                .unwrap()
-                < 1e-3
-        );
+        assert_eq!(of["impacts"], sum);
+        assert!(number(&of["verification"]["estimated_error_clearances"]) < 1e-3);
         for plane in planes {
             assert!(plane["outcome"].is_string() && plane["run_time_s"].is_null());
             assert_eq!(plane["supervision"].is_object(), policy == "supervisor");
         }
-        for plane in ["middle", "the_other"] {
-            assert!(out.join(format!("trace_{policy}_{plane}.parquet")).exists());
+        for file in ["trace_{}_middle", "trace_{}_the_other", "axis_{}"] {
+            let file = file.replace("{}", policy);
+            assert!(folder.at(&format!("out/{file}.parquet")).exists(), "{file}");
         }
-        assert!(out.join(format!("axis_{policy}.parquet")).exists());
     }
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    let page = folder.text("out/report.html");
     for words in [
         "The event: supervisor",
         "Planes side by side: levitation",
@@ -310,33 +262,25 @@ fn what_is_written_and_printed_has_every_plane() {
         "Plane: the other",
         "<h3>Slope</h3>",
     ] {
-        assert!(page.contains(words), "{words}");
+        has(&page, &[words]);
     }
-    assert!(!page.contains("NaN"));
+    lacks(&page, &["NaN"]);
     // What an earlier run left is not taken for this one's.
-    let alone = fs::read_to_string(&scene)
-        .unwrap()
-        .replace("\"levitation\", ", "");
-    fs::write(&scene, alone).unwrap();
-    assert!(run_scene(&scene, &out, &[]).status.success());
-    assert!(!out.join("trace_levitation_middle.parquet").exists());
-    assert!(!out.join("axis_levitation.parquet").exists());
+    folder.put("scene.toml", edited(&text, &[("\"levitation\", ", "")]));
+    folder.ran("run scene.toml --out out").good();
+    let left = folder.names("out").join(" ");
+    lacks(&left, &["trace_levitation_middle", "axis_levitation"]);
 }
 
 #[test]
 fn the_scenes_of_machines_run_and_are_confirmed() {
     for name in machine_scene_names() {
-        let scene = Scene::load(&machine_scene_path(&name)).unwrap();
+        let name = format!("machines/{name}");
+        let scene = scene(&name);
         assert!(scene.planes.len() > 1, "{name}");
         assert_eq!(scene.warnings, [""; 0], "{name}");
-        let folder = TempDir::new().unwrap();
-        let result = run_scene(
-            &machine_scene_path(&name),
-            folder.path(),
-            &["--verify", "--no-trace"],
-        );
-        let errors = String::from_utf8_lossy(&result.stderr);
-        assert!(result.status.success(), "{name}: {errors}");
+        let line = format!("run @{name} --out out --verify --no-trace");
+        Folder::fresh().ran(&line).good();
     }
 }
 
@@ -344,33 +288,23 @@ fn the_scenes_of_machines_run_and_are_confirmed() {
 /// is not struck takes part.
 #[test]
 fn one_machine_is_seen_in_three_ways() {
-    let path = |name: &str| root().join(format!("firmware-host/scenes/one_machine/{name}.toml"));
-    let load = |name: &str| {
-        let scene = Scene::load(&path(name)).unwrap();
+    let [point, rigid, flexible] = ["point_mass", "rigid", "flexible"].map(|name| {
+        let scene = scene(&format!("one_machine/{name}"));
         assert_eq!(scene.warnings, [""; 0], "{name}");
         scene
-    };
-    let [point, rigid, flexible] = ["point_mass", "rigid", "flexible"].map(load);
+    });
     let planes_of = [&point, &rigid, &flexible].map(|scene| scene.planes.len());
     assert_eq!(planes_of, [1, 2, 2]);
     // The point mass is what an impact at the coupling finds of the rigid rotor.
     let mass_kg = rigid.plant(1).rotor.mass_kg;
-    assert!(
-        (point.plant(0).rotor.mass_kg / mass_kg - 1.0).abs() < 1e-3,
-        "{mass_kg}"
-    );
+    let off = point.plant(0).rotor.mass_kg / mass_kg - 1.0;
+    assert!(off.abs() < 1e-3, "{mass_kg}");
     for kind in [PolicyKind::Levitation, PolicyKind::Supervisor] {
         let alone = run(&point, kind, Keep::Verdict, &mut |_| {}).unwrap().0;
         let [rigid, flexible] = [&rigid, &flexible].map(|scene| planes(scene, kind));
-        let forces = [
-            alone.peak_contact_force_n,
-            rigid[1].0.peak_contact_force_n,
-            flexible[1].0.peak_contact_force_n,
-        ];
-        assert!(
-            forces[0] > forces[1] && forces[1] > forces[2],
-            "{kind:?} {forces:?}"
-        );
+        let struck = [&alone, &rigid[1].0, &flexible[1].0];
+        let forces = struck.map(|figures| figures.peak_contact_force_n);
+        assert!(forces.is_sorted_by(|a, b| a > b), "{kind:?} {forces:?}");
         let far = [&rigid, &flexible].map(|ends| ends[0].0.impacts > 0);
         assert_eq!(far, [kind == PolicyKind::Levitation; 2], "{kind:?}");
         let ended = rigid.iter().chain(&flexible).map(|(figures, _)| figures);

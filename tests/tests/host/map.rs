@@ -2,86 +2,41 @@
 
 use crate::refusals::{all, command_line};
 use serde_json::Value;
-use std::fs;
-use std::path::Path;
-use system_tests::{host, scene_path};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, has, number};
 
 const X: &str = "friction.coefficient=0.05..0.6";
 const Y: &str = "contact.restitution=0.1..0.9";
 
-/// Exit code, what it printed, and what it said.
-fn map(arguments: &[&str], out: &Path) -> (Option<i32>, String, String) {
-    let output = (host().arg("map").args(arguments))
-        .args(["--json", "--out"])
-        .arg(out)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code(),
-        text(output.stdout),
-        text(output.stderr),
-    )
+/// What is said of a map in JSON, and the folder in which it lies.
+fn map(scene: &str, more: &str) -> (Value, Folder) {
+    let folder = Folder::fresh();
+    let done = folder.ran(&format!("map @{scene} {more} --json --out map"));
+    (done.json(), folder)
 }
 
 #[test]
 fn a_map_is_the_same_by_lanes_and_one_by_one_whatever_the_threads() {
-    let folder = TempDir::new().unwrap();
-    let scene = scene_path("impact_at_40_hz");
-    let scene = scene.to_str().unwrap();
-    let run =
-        |threads: &str, name: &str| {
-            let out = folder.path().join(name);
-            let arguments = [
-                scene,
-                "--x",
-                X,
-                "--y",
-                Y,
-                "--cells",
-                "24x20",
-                "--held-spin",
-                "--threads",
-                threads,
-            ];
-            let (code, said, error) = map(&arguments, &out);
-            assert_eq!(code, Some(0), "{error}");
-            let page = fs::read_to_string(out.join("map.html")).unwrap();
-            assert!(page.contains(
-                "Critical impact speed over friction.coefficient and contact.restitution"
-            ));
-            let done: Value = serde_json::from_str(&said).unwrap();
-            (done, fs::read(out.join("map.parquet")).unwrap())
-        };
-    let (done, alone) = run("1", "one");
+    let run = |threads: u32| {
+        let more = format!("--x {X} --y {Y} --cells 24x20 --held-spin --threads {threads}");
+        let (done, folder) = map("impact_at_40_hz", &more);
+        let title = "Critical impact speed over friction.coefficient and contact.restitution";
+        has(&folder.text("map/map.html"), &[title]);
+        (done, folder.bytes("map/map.parquet"))
+    };
+    let (done, alone) = run(1);
     assert_eq!(done["cells"], 480);
     assert_eq!(done["lanes"], done["runs"]);
     assert!(done["checked"].as_u64().unwrap() >= 80);
     assert_eq!(done["equal_to_scalar"], done["checked"]);
     // Most friction and the springiest wall bear least: less than a tenth of what the least friction and the deadest wall bear.
-    let speed = |key: &str| done[key].as_f64().unwrap();
-    assert!(10.0 * speed("lowest_m_s") < speed("highest_m_s"));
-    assert_eq!(run("2", "two").1, alone);
+    assert!(10.0 * number(&done["lowest_m_s"]) < number(&done["highest_m_s"]));
+    assert_eq!(run(2).1, alone);
 }
 
 #[test]
 fn free_spin_goes_one_by_one() {
-    let folder = TempDir::new().unwrap();
-    let scene = scene_path("impact_at_40_hz");
-    let inclination = "impact.inclination_deg=-20..80";
-    let arguments = [
-        scene.to_str().unwrap(),
-        "--x",
-        X,
-        "--y",
-        inclination,
-        "--cells",
-        "3x2",
-    ];
-    let (code, said, error) = map(&arguments, &folder.path().join("map"));
-    assert_eq!(code, Some(0), "{error}");
-    let done: Value = serde_json::from_str(&said).unwrap();
+    let more = format!("--x {X} --y impact.inclination_deg=-20..80 --cells 3x2");
+    let (done, _) = map("impact_at_40_hz", &more);
     assert_eq!(done["lanes"], 0);
     assert!(done["runs"].as_u64().unwrap() > 50);
 }
@@ -89,13 +44,8 @@ fn free_spin_goes_one_by_one() {
 /// Negative stiffness drives the rotor from any speed, which is not the same as from none; what the map leaves out it names.
 #[test]
 fn a_rotor_that_nothing_holds_bears_nothing() {
-    let folder = TempDir::new().unwrap();
-    let scene = scene_path("overload_then_release");
-    let arguments = [scene.to_str().unwrap(), "--held-spin", "--cells", "2x2"];
-    let out = folder.path().join("map");
-    let (code, said, error) = map(&[&arguments[..], &["--x", X, "--y", Y]].concat(), &out);
-    assert_eq!(code, Some(0), "{error}");
-    let done: Value = serde_json::from_str(&said).unwrap();
+    let more = format!("--held-spin --cells 2x2 --x {X} --y {Y}");
+    let (done, _) = map("overload_then_release", &more);
     assert_eq!(done["highest_m_s"], 0.0);
     assert_eq!(done["left_out"], serde_json::json!(["loads"]));
 }
@@ -103,30 +53,21 @@ fn a_rotor_that_nothing_holds_bears_nothing() {
 /// Of one key that is spread, percentiles are the speeds at these shares of its range: more friction bears less.
 #[test]
 fn percentiles_are_those_of_what_is_spread() {
-    let folder = TempDir::new().unwrap();
-    let scene = scene_path("impact_at_40_hz");
-    let out = folder.path().join("map");
     // One cell, its middle at the scene's own numbers.
-    let cell = |more: &[&str]| {
-        let x = ["--x", "contact.stiffness_n_m=0.9e8..1.1e8"];
-        let y = ["--y", "contact.restitution=0.6..0.8"];
-        let fixed = [scene.to_str().unwrap(), "--held-spin", "--cells", "1x1"];
-        let (code, said, error) = map(&[&fixed[..], &x, &y, more].concat(), &out);
-        assert_eq!(code, Some(0), "{error}");
-        fs::remove_dir_all(&out).unwrap();
-        let done: Value = serde_json::from_str(&said).unwrap();
+    let cell = |more: &str| {
+        let axes = "--x contact.stiffness_n_m=0.9e8..1.1e8 --y contact.restitution=0.6..0.8";
+        let fixed = format!("{axes} --held-spin --cells 1x1 {more}");
+        let (done, _) = map("impact_at_40_hz", &fixed);
         assert_eq!(done["equal_to_scalar"], done["checked"]);
-        (done["lowest_m_s"].as_f64().unwrap(), done["runs"].clone())
+        (number(&done["lowest_m_s"]), done["runs"].clone())
     };
     let mut of_all = None;
     for (of, coefficient) in [("p5", "0.385"), ("p50", "0.25"), ("p95", "0.115")] {
-        let (known, _) = cell(&["--set", &format!("friction.coefficient={coefficient}")]);
-        let spread = ["--spread", "friction.coefficient=0.1..0.4"];
-        let (drawn, runs) = cell(&[&spread[..], &["--draws", "100", "--of", of]].concat());
-        assert!(
-            (drawn / known - 1.0).abs() < 0.03,
-            "{of}: {drawn} for {known}"
-        );
+        let (known, _) = cell(&format!("--set friction.coefficient={coefficient}"));
+        let spread = "--spread friction.coefficient=0.1..0.4 --draws 100 --of";
+        let (drawn, runs) = cell(&format!("{spread} {of}"));
+        let off = drawn / known - 1.0;
+        assert!(off.abs() < 0.03, "{of}: {drawn} for {known}");
         // The same draws, whatever is shown of them.
         assert_eq!(*of_all.get_or_insert(runs.clone()), runs);
     }

@@ -3,22 +3,22 @@
 
 mod mistakes;
 
+use crate::machine_scenes::files::save_in;
 use firmware_bench::device::external::{Caller, Make, Question, Setup, Step};
 use firmware_bench::device::levitation::{Levitation, LevitationParams};
 use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
-use firmware_bench::run::trace::{Recorder, Trace};
+use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::Spec;
 use nalgebra::DMatrix;
-use npyz::WriterBuilder;
 use plant_model::V2;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use supervisor::IntegratorHint;
-use system_tests::{root, run_scene, scene_path};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, edited, has, ran, scene_text};
+use system_tests::root;
 
 /// The gains that the example scenes' controllers have.
 const GAINS: &str = "[levitation]
@@ -46,32 +46,20 @@ pub(crate) fn python() -> bool {
 
 /// An example scene with another controller.
 fn with(table: &str) -> String {
-    let scene = fs::read_to_string(scene_path("controllers/pid_in_python")).unwrap();
+    let scene = scene_text("controllers/pid_in_python");
     let start = scene.find("[controller]").unwrap();
     let end = scene.find("feed_forward_weight").unwrap();
     format!("{}{table}{}", &scene[..start], &scene[end..])
 }
 
-fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
-    let path = folder.join(name);
-    fs::write(&path, text).unwrap();
-    path
-}
-
 /// Compiles a controller as its users do.
-fn library(folder: &Path, name: &str, source: &str) {
-    let source = written(folder, &format!("{name}.c"), source);
+fn library(folder: &Folder, name: &str, source: &str) {
+    let source = folder.put(&format!("{name}.c"), source);
     let mut cc = Command::new("cc");
-    cc.args(["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]);
-    cc.args(["-O2", "-shared", "-fPIC", "-I"]);
+    cc.args("-std=c99 -Wall -Wextra -Wpedantic -Werror -O2 -shared -fPIC -I".split(' '));
     cc.arg(root().join("firmware-host/controller/include"));
-    cc.arg("-o").arg(folder.join(format!("{name}.so")));
-    let output = cc.arg(source).arg("-lm").output().unwrap();
-    assert!(
-        output.status.success(),
-        "{name}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    cc.arg("-o").arg(folder.at(&format!("{name}.so")));
+    ran(cc.arg(source).arg("-lm")).good();
 }
 
 fn trace(path: &Path, kind: PolicyKind) -> (Trace, u64) {
@@ -84,30 +72,31 @@ fn trace(path: &Path, kind: PolicyKind) -> (Trace, u64) {
 /// limited force and integrators that stand included.
 #[test]
 fn the_pid_in_c_and_in_python_is_the_built_in_one() {
-    let folder = TempDir::new().unwrap();
+    let folder = Folder::fresh();
     let source = fs::read_to_string(examples().join("pid.c")).unwrap();
     assert!(source.lines().count() < 40);
-    library(folder.path(), "pid", &source);
-    fs::copy(examples().join("pid.py"), folder.path().join("pid.py")).unwrap();
+    library(&folder, "pid", &source);
+    fs::copy(examples().join("pid.py"), folder.at("pid.py")).unwrap();
     // Of a magnet that is soon at its cap.
-    let weak = |table: &str| with(table).replace("force_max_n = 1000.0", "force_max_n = 150.0");
-    let built_in = written(folder.path(), "gains.toml", &weak(GAINS));
-    let mut others = vec![format!(
-        "[controller]\nlibrary = \"pid.so\"\n{PARAMETERS}\n"
-    )];
+    let put = |name: &str, table: &str| {
+        let weak = with(table).replace("force_max_n = 1000.0", "force_max_n = 150.0");
+        folder.put(name, weak)
+    };
+    let built_in = put("gains.toml", GAINS);
+    let mut others = vec!["library = \"pid.so\""];
     if python() {
-        others.push(format!("[controller]\npython = \"pid.py\"\n{PARAMETERS}\n"));
+        others.push("python = \"pid.py\"");
     }
     for kind in BOTH {
         let (expected, impacts) = trace(&built_in, kind);
-        let limited = expected
-            .rows
-            .iter()
-            .filter(|r| r.commanded_n.norm() > 149.0);
-        let limited = limited.count();
+        let limited = expected.rows.iter();
+        let limited = limited.filter(|r| r.commanded_n.norm() > 149.0).count();
         assert!(impacts > 0 && limited > 10, "{kind:?} {impacts} {limited}");
         for other in &others {
-            let own = written(folder.path(), "own.toml", &weak(other));
+            let own = put(
+                "own.toml",
+                &format!("[controller]\n{other}\n{PARAMETERS}\n"),
+            );
             let (rows, _) = trace(&own, kind);
             assert_eq!(rows.rows.len(), expected.rows.len());
             assert!(rows == expected, "{kind:?} {other}");
@@ -166,13 +155,13 @@ fn a_controller_of_the_callers_stands_in_the_place_of_gains() {
             assert!(own == figures && own_rows == rows, "{kind:?} {table}");
         }
     }
-    let shown = |table: &str| trace(&of_caller(table), BOTH[0]).unwrap_err().to_string();
+    let said = |table: &str| trace(&of_caller(table), BOTH[0]).unwrap_err().to_string();
     assert_eq!(
-        shown("[controller]\nparameters = [1.0]\n"),
+        said("[controller]\nparameters = [1.0]\n"),
         "policy levitation: controller gains at 0 s: answered 3 forces, expected 2"
     );
     assert_eq!(
-        shown("[controller]\nparameters = [13.0]\n"),
+        said("[controller]\nparameters = [13.0]\n"),
         "policy levitation: controller: gains has no luck"
     );
 }
@@ -189,35 +178,34 @@ fn apart_m(a: &Trace, b: &Trace) -> f64 {
 /// As long as the force is not limited, which is when the built-in integrators stand.
 #[test]
 fn the_pid_by_matrices_and_by_sections_moves_the_rotor_alike() {
-    let folder = TempDir::new().unwrap();
+    let folder = Folder::fresh();
     // From the middle and without noise: the built-in one takes its first reading as the one before it.
-    let gentle = |table: &str| {
-        (with(table).replace("noise_rms_m = 1e-6\n", ""))
-            .replace("[1300.0, 750.0]", "[130.0, 75.0]")
+    let gentle = [
+        ("noise_rms_m = 1e-6\n", ""),
+        ("[1300.0, 750.0]", "[130.0, 75.0]"),
+    ];
+    let moved = |table: &str| {
+        let path = folder.put("own.toml", edited(&with(table), &gentle));
+        trace(&path, BOTH[0]).0
     };
-    let of_example = |name: &str, table: &str| {
-        let scene = fs::read_to_string(scene_path(&format!("controllers/{name}"))).unwrap();
-        let start = scene.find(table).unwrap();
-        let end = scene.find("feed_forward_weight").unwrap();
-        scene[start..end].to_owned()
-    };
-    let matrices = of_example("state_space", "[state_space]");
-    let sections =
-        "[biquads]\ngain_n_m = 5e5\nsections = [16.0, -31.749, 15.74925, 1.0, -1.75, 0.75]\n";
+    let example = scene_text("controllers/state_space");
+    let start = example.find("[state_space]").unwrap();
+    let end = example.find("feed_forward_weight").unwrap();
     let rows = [16.0, -31.749, 15.74925, 1.0, -1.75, 0.75];
-    let doubled: Vec<f64> = rows.iter().map(|x| 2.0 * x).collect();
-    save_sections(&folder.path().join("pid.npz"), &doubled);
-    let in_file = "[biquads]\ngain_n_m = 5e5\nfile = \"pid.npz\"\n";
-    let (expected, _) = trace(
-        &written(folder.path(), "gains.toml", &gentle(GAINS)),
-        BOTH[0],
+    let sections = format!("[biquads]\ngain_n_m = 5e5\nsections = {rows:?}\n");
+    // As NumPy saves sections, with a row each.
+    let doubled = 2.0 * DMatrix::from_row_slice(1, 6, &rows);
+    save_in(
+        &folder.at("pid.npz"),
+        &[("sos", doubled)],
+        npyz::Order::Fortran,
     );
+    let in_file = "[biquads]\ngain_n_m = 5e5\nfile = \"pid.npz\"\n";
+    let expected = moved(GAINS);
     let way = expected.rows.iter().map(|row| row.plant.position_m.norm());
     assert!(way.fold(0.0, f64::max) > 1e-4);
-    for table in [matrices.as_str(), sections, in_file] {
-        let own = written(folder.path(), "own.toml", &gentle(table));
-        let (rows, _) = trace(&own, BOTH[0]);
-        let off = apart_m(&rows, &expected);
+    for table in [&example[start..end], &sections, in_file] {
+        let off = apart_m(&moved(table), &expected);
         assert!(off < 1e-12, "{table} {off:e}");
     }
 }
@@ -225,60 +213,34 @@ fn the_pid_by_matrices_and_by_sections_moves_the_rotor_alike() {
 /// Eigenvalues of numbers whose products are not finite would be sought without end.
 #[test]
 fn numbers_of_a_state_space_have_a_limit() {
-    let text = fs::read_to_string(scene_path("controllers/state_space")).unwrap();
+    let text = scene_text("controllers/state_space");
     let with = |x: &str| Scene::parse("own.toml", &text.replace("-5000.0", x));
     assert!(with("-1e29").is_ok());
     for beyond in ["1e31", "-1e300", "nan"] {
-        let error = format!(
-            "{:?}",
-            miette::Report::new(with(beyond).expect_err("taken"))
-        );
-        assert!(error.contains("state_space.a"), "{error}");
+        let error = miette::Report::new(with(beyond).expect_err("taken"));
+        has(&format!("{error:?}"), &["state_space.a"]);
     }
-}
-
-/// As NumPy saves sections, with a row each.
-fn save_sections(path: &Path, numbers: &[f64]) {
-    let mut archive = zip::ZipWriter::new(fs::File::create(path).unwrap());
-    let options = zip::write::SimpleFileOptions::default();
-    archive.start_file("sos.npy", options).unwrap();
-    let sos = DMatrix::from_row_slice(numbers.len() / 6, 6, numbers);
-    let mut array = npyz::WriteOptions::new()
-        .default_dtype()
-        .shape(&[sos.nrows() as u64, 6])
-        .order(npyz::Order::Fortran)
-        .writer(&mut archive)
-        .begin_nd()
-        .unwrap();
-    array.extend(sos.iter()).unwrap();
-    array.finish().unwrap();
-    archive.finish().unwrap();
 }
 
 /// Every example holds its rotor under both policies, whatever the number of threads, to the last bit.
 #[test]
 fn the_examples_hold_their_rotor() {
-    let folder = TempDir::new().unwrap();
     let mut scenes = vec!["state_space", "biquads"];
     if python() {
         scenes.push("pid_in_python");
     }
     for name in scenes {
-        let path = scene_path(&format!("controllers/{name}"));
-        let ran = |threads: &str| {
-            let out = folder.path().join(format!("{name}_{threads}"));
-            let output = run_scene(&path, &out, &["--json", "--threads", threads]);
-            let shown = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{name}: {shown}");
-            let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-            for policy in ["levitation", "supervisor"] {
+        let ran = |threads: u32| {
+            let folder = Folder::fresh();
+            let line = format!("run @controllers/{name} --out . --json --threads {threads}");
+            let json = folder.ran(&line).json();
+            ["levitation", "supervisor"].map(|policy| {
                 let outcome = &json["policies"][policy]["outcome"];
                 assert_eq!(outcome, "recovered", "{name} {policy}");
-            }
-            ["levitation", "supervisor"]
-                .map(|policy| fs::read(out.join(format!("trace_{policy}.parquet"))).unwrap())
+                folder.bytes(&format!("trace_{policy}.parquet"))
+            })
         };
-        assert!(ran("1") == ran("2"), "{name}");
+        assert!(ran(1) == ran(2), "{name}");
     }
 }
 
@@ -305,22 +267,18 @@ make = Pd
 /// A rotor in two planes with this controller in the place of its gains.
 fn rotor_with(table: &str) -> String {
     let gains = "[levitation]\nproportional_n_m = 4e5\nderivative_n_s_m = 900.0\nderivative_filter_s = 1e-4\n";
-    let scene = fs::read_to_string(scene_path("one_machine/rigid")).unwrap();
-    assert!(scene.contains(gains));
-    (scene.replace("duration_s = 0.3", "duration_s = 0.1")).replace(gains, table)
+    let edits = [("duration_s = 0.3", "duration_s = 0.1"), (gains, table)];
+    edited(&scene_text("one_machine/rigid"), &edits)
 }
 
 /// Gains of its planes without a filter.
 const PLAIN: &str = "[levitation]\nproportional_n_m = 4e5\nderivative_n_s_m = 900.0\n";
 
-fn traces(folder: &Path, text: &str, kind: PolicyKind) -> Vec<Trace> {
-    let path = written(folder, "rotor.toml", text);
+fn traces(folder: &Folder, text: &str, kind: PolicyKind) -> Vec<Trace> {
+    let path = folder.put("rotor.toml", text);
     let scene = Scene::load(&path).unwrap_or_else(|e| panic!("{e}"));
     let mut traces = vec![Trace::default(); scene.planes.len()];
-    let recorders = Recorders {
-        planes: traces.iter_mut().map(|t| t as &mut dyn Recorder).collect(),
-        axis: None,
-    };
+    let recorders = Recorders::of_planes(&mut traces);
     record(&scene, kind, recorders, Accuracy::default(), &mut |_| {}).unwrap();
     traces
 }
@@ -330,12 +288,12 @@ fn a_program_holds_a_whole_rotor_as_gains_of_its_planes_do() {
     if !python() {
         return;
     }
-    let folder = TempDir::new().unwrap();
-    written(folder.path(), "pd.py", WHOLE);
+    let folder = Folder::fresh();
+    folder.put("pd.py", WHOLE);
     let program = "[controller]\npython = \"pd.py\"\nparameters = [4e5, 900.0]\n";
     for kind in BOTH {
         let [expected, own] =
-            [PLAIN, program].map(|table| traces(folder.path(), &rotor_with(table), kind));
+            [PLAIN, program].map(|table| traces(&folder, &rotor_with(table), kind));
         assert_eq!(own.len(), 2);
         for (a, b) in own.iter().zip(&expected) {
             assert!(b.rows.len() > 1000 && a.rows == b.rows, "{kind:?}");
@@ -346,35 +304,34 @@ fn a_program_holds_a_whole_rotor_as_gains_of_its_planes_do() {
 /// One plane with the scene's sections, one with its own.
 #[test]
 fn sections_hold_a_whole_rotor_as_gains_of_its_planes_do() {
-    let folder = TempDir::new().unwrap();
+    let folder = Folder::fresh();
     // K_p + K_d·(1 − z⁻¹)/T.
     let scenes = "[biquads]\nsections = [18.4e6, -18e6, 0.0, 1.0, 0.0, 0.0]\n";
     let own = "[plane.biquads]\ngain_n_m = 4e5\nsections = [92.0, -90.0, 0.0, 2.0, 0.0, 0.0]\nfeed_forward_weight = true\n";
     let name = "name = \"coupling end\"\nposition_m = 0.7\ncontact_radius_m = 0.02\n";
     // From the middle and without noise, as above.
     let quiet = |table: &str| rotor_with(table).replace("noise_rms_m = 1e-6\n", "");
-    let filters = quiet(scenes).replace(name, &format!("{name}{own}"));
-    assert!(filters.contains(own));
+    let filters = edited(&quiet(scenes), &[(name, &format!("{name}{own}"))]);
     for kind in BOTH {
-        let expected = traces(folder.path(), &quiet(PLAIN), kind);
-        let own = traces(folder.path(), &filters, kind);
+        let expected = traces(&folder, &quiet(PLAIN), kind);
+        let own = traces(&folder, &filters, kind);
         for (a, b) in own.iter().zip(&expected) {
             let off = apart_m(a, b);
             assert!(off < 1e-11, "{kind:?} {off:e}");
         }
     }
-    let refused = |text: &str, says: &str| {
-        let path = written(folder.path(), "rotor.toml", text);
-        let error = Scene::load(&path).expect_err("taken").to_string();
-        assert!(error.contains(says), "{error}");
-    };
     let alone = filters.replace(&format!("{scenes}feed_forward_weight = true\n"), "");
-    refused(&alone, "plane[0].biquads: is missing");
     let both = filters.replace(scenes, "[state_space]\nd = [0.0]\n");
-    refused(&both, "plane[1].biquads: does not go with [state_space]");
+    for (text, says) in [
+        (alone, "plane[0].biquads: is missing"),
+        (both, "plane[1].biquads: does not go with [state_space]"),
+    ] {
+        let refused = Scene::load(&folder.put("rotor.toml", text));
+        has(&refused.expect_err("taken").to_string(), &[says]);
+    }
 }
 
-/// What the C controller is given, checked by itself.
+/// What the C controller is told, checked by itself.
 const ASKS_IN_C: &str = "#include \"amb_controller.h\"
 AMB_CONTROLLER_DEFINE_ABI
 static uint32_t n;
@@ -414,16 +371,16 @@ make = Asks
 
 #[test]
 fn controllers_are_told_what_the_scene_says() {
-    let folder = TempDir::new().unwrap();
-    library(folder.path(), "asks", ASKS_IN_C);
-    written(folder.path(), "asks.py", ASKS_IN_PYTHON);
+    let folder = Folder::fresh();
+    library(&folder, "asks", ASKS_IN_C);
+    folder.put("asks.py", ASKS_IN_PYTHON);
     let mut programs = vec!["library = \"asks.so\""];
     if python() {
         programs.push("python = \"asks.py\"");
     }
     let rows = programs.iter().map(|program| {
         let table = format!("[controller]\n{program}\nparameters = [3.0, -7.0]\n");
-        let scene = written(folder.path(), "asks.toml", &with(&table));
+        let scene = folder.put("asks.toml", with(&table));
         trace(&scene, PolicyKind::Levitation).0
     });
     let rows: Vec<Trace> = rows.collect();

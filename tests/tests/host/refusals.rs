@@ -3,9 +3,8 @@
 use firmware_bench::scene::Scene;
 use std::collections::BTreeMap;
 use std::fs;
-use std::process::Stdio;
-use system_tests::{host, root, scene_path};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, lacks};
+use system_tests::root;
 
 /// Rows of a table, "file/table". They are counted: one that is lost would be missed by nobody.
 pub(crate) fn rows(table: &str, count: usize) -> Vec<Vec<String>> {
@@ -46,29 +45,11 @@ pub(crate) fn parsed(scene: &str, _: &[String]) -> String {
 
 /// What the program says of a command line, in which `@` begins the name of a scene. It leaves nothing behind.
 pub(crate) fn command_line(line: &str, _: &[String]) -> String {
-    let folder = TempDir::new().unwrap();
-    let words = line
-        .split_whitespace()
-        .map(|word| match word.strip_prefix('@') {
-            Some(name) => scene_path(name).into_os_string(),
-            None => word.into(),
-        });
-    let mut command = host();
-    command.args(words).current_dir(folder.path());
-    let output = command.stdin(Stdio::null()).output().unwrap();
-    let said = flat(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{line}: {said}");
-    assert!(output.stdout.is_empty(), "{line}");
-    assert!(!said.contains("tip:"), "{line}: {said}");
-    let left = fs::read_dir(folder.path()).unwrap();
-    assert_eq!(left.count(), 0, "{line}");
+    let folder = Folder::fresh();
+    let said = folder.ran(line).refused();
+    lacks(&said, &["tip:"]);
+    assert_eq!(folder.names("."), [""; 0], "{line}");
     said
-}
-
-/// In one line: what is said is wrapped to the terminal's width.
-pub(crate) fn flat(said: &[u8]) -> String {
-    let text = String::from_utf8_lossy(said).replace('│', " ");
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[test]

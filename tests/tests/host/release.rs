@@ -4,6 +4,7 @@ use crate::licences::metadata;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use system_tests::ran::{Folder, ran};
 use system_tests::{host, root};
 
 /// The version of the workspace, which this crate has from there.
@@ -28,13 +29,9 @@ fn toml_of(path: impl AsRef<Path>) -> toml::Table {
 
 /// Files of the project that git knows, with this ending.
 fn files(ending: &str) -> Vec<PathBuf> {
-    let git = Command::new("git")
-        .args(["ls-files", "-z", &format!("*{ending}")])
-        .current_dir(root())
-        .output()
-        .unwrap();
-    assert!(git.status.success(), "the tests run in a checkout");
-    let names = String::from_utf8(git.stdout).unwrap();
+    let mut git = Command::new("git");
+    git.args(["ls-files", "-z", &format!("*{ending}")]);
+    let names = ran(git.current_dir(root())).good();
     names.split_terminator('\0').map(PathBuf::from).collect()
 }
 
@@ -98,17 +95,17 @@ fn there_is_one_version() {
         }
     }
     // Where people read it.
-    let mut named = 0;
+    let mut said = 0;
     for page in files(".md") {
         let text = read(&page);
         for package in &ours {
             for version in versions_behind(&text, package["name"].as_str().unwrap()) {
                 assert_eq!(version, VERSION, "{}", page.display());
-                named += 1;
+                said += 1;
             }
         }
     }
-    assert!(named >= 3, "{named} pages name a package's file");
+    assert!(said >= 3, "{said} pages name a package's file");
     let (minor, _) = VERSION.rsplit_once('.').unwrap();
     let cmake = format!("find_package(amb_supervisor {minor} REQUIRED)");
     assert!(read("docs/src/supervisor/c.md").contains(&cmake), "{cmake}");
@@ -147,30 +144,17 @@ fn every_list_of_changes_has_this_version() {
     }
 }
 
-/// Runs a program that has to be there, and has to succeed.
-fn succeeds(command: &mut Command) -> String {
-    let output = command.output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?}: {text}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
 /// The script around what the tests have built: the folder is complete and summed, and the program runs where it is unpacked.
 #[test]
 fn a_release_is_whole_and_runs_where_it_is_unpacked() {
-    succeeds(
-        Command::new(root().join("firmware-host/dist"))
-            .arg("--trial")
-            .current_dir(root()),
-    );
+    let mut dist = Command::new(root().join("firmware-host/dist"));
+    ran(dist.arg("--trial").current_dir(root())).good();
     let made = root().join(format!("target/dist/{VERSION}-trial"));
-    succeeds(
-        Command::new("sha256sum")
-            .args(["--check", "--strict", "SHA256SUMS"])
-            .current_dir(&made),
-    );
-    let summed = std::fs::read_to_string(made.join("SHA256SUMS")).unwrap();
-    let folder = tempfile::tempdir().unwrap();
+    let mut sums = Command::new("sha256sum");
+    sums.args(["--check", "--strict", "SHA256SUMS"]);
+    ran(sums.current_dir(&made)).good();
+    let summed = read(made.join("SHA256SUMS"));
+    let folder = Folder::fresh();
     let mut unpacked = Vec::new();
     for archive in ["firmware-host-", "amb_supervisor-"] {
         let name = (summed.lines().filter_map(|line| line.split_once("  ")))
@@ -179,8 +163,8 @@ fn a_release_is_whole_and_runs_where_it_is_unpacked() {
         let name = name.unwrap_or_else(|| panic!("{archive}: {summed}"));
         let mut tar = Command::new("tar");
         tar.arg("-xzf").arg(made.join(name));
-        succeeds(tar.current_dir(folder.path()));
-        unpacked.push(folder.path().join(name.trim_end_matches(".tar.gz")));
+        ran(tar.current_dir(folder.at("."))).good();
+        unpacked.push(folder.at(name.trim_end_matches(".tar.gz")));
     }
     let [program, library] = &unpacked[..] else {
         panic!("two archives")
@@ -188,18 +172,16 @@ fn a_release_is_whole_and_runs_where_it_is_unpacked() {
     assert!(library.join("include/amb_supervisor.h").is_file());
 
     let run = || Command::new(program.join("bin/firmware-host"));
-    assert_eq!(
-        succeeds(run().arg("--version")).trim(),
-        format!("firmware-host {VERSION}")
-    );
+    let version = ran(run().arg("--version")).good();
+    assert_eq!(version.trim(), format!("firmware-host {VERSION}"));
     let mut make = run();
     make.arg("fmu")
         .arg(program.join("scenes/impact_at_40_hz.toml"));
-    succeeds(make.arg("--out").arg(folder.path().join("units")));
-    assert!(folder.path().join("units/supervisor.fmu").is_file());
+    ran(make.arg("--out").arg(folder.at("units"))).good();
+    assert!(folder.at("units/supervisor.fmu").is_file());
 
     // Whose code it is: every crate with its licence, most with the text of it.
-    let linked = std::fs::read_to_string(program.join("licences/crates")).unwrap();
+    let linked = read(program.join("licences/crates"));
     assert!(linked.lines().count() > 100, "{linked}");
     for line in linked.lines() {
         let (name, licence) = line.split_once('|').unwrap();

@@ -2,45 +2,31 @@
 
 use firmware_bench::record::file::RecordFile;
 use serde_json::Value;
-use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::path::PathBuf;
 use supervisor::Stretch;
 use system_tests::browser::Browser;
-use system_tests::{host, machine_scene_path, root, run_scene, scene_path};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, has, lacks};
+use system_tests::{root, scene_path};
 
-fn page(scene: &Path, out: &Path) -> PathBuf {
-    let result = run_scene(scene, out, &["--no-trace"]);
-    let error = String::from_utf8_lossy(&result.stderr);
-    assert!(result.status.success(), "{error}");
-    out.join("report.html")
-}
-
-fn review(record: &Path, out: &Path) -> Output {
-    let mut review = host();
-    review.arg("review").arg(record).arg("--out").arg(out);
-    review.output().unwrap()
+fn page(folder: &Folder, scene: &str, out: &str) -> PathBuf {
+    folder
+        .ran(&format!("run {scene} --out {out} --no-trace"))
+        .good();
+    folder.at(&format!("{out}/report.html"))
 }
 
 /// A record becomes a page, a damaged one as far as it is whole, and what is no record leaves nothing behind.
 #[test]
 fn a_record_becomes_a_page() {
-    let folder = TempDir::new().unwrap();
-    let here = |name: &str| folder.path().join(name);
-    page(&scene_path("overload_then_release"), &here("run"));
-    let record = here("run/record_supervisor.bin");
-    let reviewed = review(&record, &here("whole"));
-    let printed = String::from_utf8_lossy(&reviewed.stdout).into_owned();
-    assert!(reviewed.status.success(), "{reviewed:?}");
-    let whole = fs::read_to_string(here("whole/report.html")).unwrap();
+    let folder = Folder::fresh();
+    page(&folder, "@overload_then_release", "run");
+    let reviewed = folder.ran("review run/record_supervisor.bin --out whole");
+    let printed = reviewed.good();
+    let whole = folder.text("whole/report.html");
     // The verdict that is printed heads the page.
     let verdict = printed.lines().next().unwrap();
-    assert!(
-        whole.contains(&format!("<p class=\"headline\">{verdict}")),
-        "{verdict}"
-    );
+    has(&whole, &[&format!("<p class=\"headline\">{verdict}")]);
     for heading in [
         "Orbit",
         "Position",
@@ -51,29 +37,24 @@ fn a_record_becomes_a_page() {
         "Time in contact",
         "Modes",
     ] {
-        assert!(whole.contains(&format!("<h3>{heading}</h3>")), "{heading}");
+        has(&whole, &[&format!("<h3>{heading}</h3>")]);
     }
-    assert!(
-        !whole.contains("<h3>Contact force</h3>"),
-        "no record has it"
-    );
-    assert!(whole.contains("ENGAGED") && !whole.contains("class=\"warning\""));
+    // No record has it.
+    lacks(&whole, &["<h3>Contact force</h3>", "class=\"warning\""]);
+    has(&whole, &["ENGAGED"]);
 
-    the_slow_track_is_that_of_the_record(&whole, &fs::read(&record).unwrap());
+    let mut bytes = folder.bytes("run/record_supervisor.bin");
+    the_slow_track_is_that_of_the_record(&whole, &bytes);
 
-    let mut bytes = fs::read(&record).unwrap();
     let last = bytes.len() - 40;
     bytes[last] ^= 1;
-    fs::write(here("damaged.bin"), &bytes).unwrap();
-    let reviewed = review(&here("damaged.bin"), &here("damaged"));
-    assert_eq!(reviewed.status.code(), Some(2));
-    let damaged = fs::read_to_string(here("damaged/report.html")).unwrap();
-    assert!(damaged.contains("class=\"warning\""), "the damage is told");
+    folder.put("damaged.bin", &bytes);
+    folder.ran("review damaged.bin --out damaged").fails(2);
+    has(&folder.text("damaged/report.html"), &["class=\"warning\""]);
 
-    fs::write(here("none.bin"), [7; 33]).unwrap();
-    let reviewed = review(&here("none.bin"), &here("none"));
-    assert_eq!(reviewed.status.code(), Some(2));
-    assert!(!here("none").exists());
+    folder.put("none.bin", [7; 33]);
+    folder.ran("review none.bin --out none").fails(2);
+    assert!(!folder.at("none").exists());
 }
 
 /// What is written of a column: differences in steps.
@@ -127,23 +108,17 @@ fn the_slow_track_is_that_of_the_record(page: &str, bytes: &[u8]) {
 /// What the walk-through shows is what the tool draws today of the record that it is about, and all of it is small.
 #[test]
 fn pictures_of_the_walk_through_are_the_tools() {
-    let folder = TempDir::new().unwrap();
-    let here = |name: &str| folder.path().join(name);
-    page(&scene_path("overload_then_release"), &here("run"));
-    let mut review = host();
-    review.arg("review").arg(here("run/record_supervisor.bin"));
-    let reviewed = review.arg("--figures").arg(here("drawn")).output().unwrap();
-    assert!(reviewed.status.success(), "{reviewed:?}");
+    let folder = Folder::fresh();
+    page(&folder, "@overload_then_release", "run");
+    let reviewed = folder.ran("review run/record_supervisor.bin --figures drawn");
+    let printed = reviewed.good();
     let kept = root().join("docs/src/start/overload");
-    let names = |folder: &Path| -> BTreeSet<String> {
-        let entries = fs::read_dir(folder).unwrap();
-        let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
-        entries.map(|entry| name(entry.unwrap())).collect()
-    };
-    let drawn = names(&here("drawn"));
-    assert_eq!(drawn, names(&kept), "docs/src/start/overload has others");
+    let drawn = folder.names("drawn");
+    // A path that begins at the root stays as it is.
+    let of_page = folder.names(kept.to_str().unwrap());
+    assert_eq!(drawn, of_page, "docs/src/start/overload has others");
     for name in &drawn {
-        let svg = fs::read_to_string(here("drawn").join(name)).unwrap();
+        let svg = folder.text(&format!("drawn/{name}"));
         assert!(svg.len() < 60_000, "{name} has {} bytes", svg.len());
         assert!(
             svg == fs::read_to_string(kept.join(name)).unwrap(),
@@ -155,11 +130,11 @@ fn pictures_of_the_walk_through_are_the_tools() {
     let (_, shown) = text.split_once("```text\n").unwrap();
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let shown = words(shown.split_once("```").unwrap().0);
-    let printed = words(&String::from_utf8_lossy(&reviewed.stdout));
+    let printed = words(&printed);
     assert!(printed.starts_with(&shown), "{printed}");
     for link in text.split("](overload/").skip(1) {
         let name = link.split(')').next().unwrap();
-        assert!(drawn.contains(name), "{name}");
+        assert!(drawn.iter().any(|drawn| drawn == name), "{name}");
     }
 }
 
@@ -168,21 +143,17 @@ fn pages_work_in_a_browser() {
     let Some(browser) = Browser::found() else {
         return;
     };
-    let folder = TempDir::new().unwrap();
-    let here = |name: &str| folder.path().join(name);
+    let folder = Folder::fresh();
     // Two seconds at 20 kHz.
-    let text = fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let long = text.replace("duration_s = 0.2\n", "duration_s = 2.0\n");
-    assert!(long.contains("duration_s = 2.0\n") && long.contains("sample_rate_hz = 20000\n"));
-    fs::write(here("long.toml"), long).unwrap();
-    let run = page(&here("long.toml"), &here("run"));
-    let machine = page(
-        &machine_scene_path("overload_of_a_flexible_rotor"),
-        &here("machine"),
-    );
-    let reviewed = review(&here("run/record_supervisor.bin"), &here("record"));
-    assert!(reviewed.status.success(), "{reviewed:?}");
-    let record = here("record/report.html");
+    let long = [
+        ("duration_s = 0.2\n", "duration_s = 2.0\n"),
+        ("sample_rate_hz = 20000\n", "sample_rate_hz = 20000\n"),
+    ];
+    folder.scene("long.toml", "overload_then_release", &long);
+    let run = page(&folder, "long.toml", "run");
+    let machine = page(&folder, "@machines/overload_of_a_flexible_rotor", "machine");
+    let record = "review run/record_supervisor.bin --out record";
+    folder.ran(record).good();
     let size = fs::metadata(&run).unwrap().len();
     assert!(size < 3_000_000, "the page has {size} bytes");
 
@@ -195,18 +166,13 @@ fn pages_work_in_a_browser() {
          [[vary]]\nkey = \"magnet.delay_samples\"\nvalues = [1, 2]\n",
         scene_path("impact_at_40_hz").display().to_string()
     );
-    fs::write(here("sweep.toml"), lines).unwrap();
-    let mut sweep = host();
-    let swept = sweep.arg("sweep").arg(here("sweep.toml"));
-    let swept = swept.arg("--out").arg(here("swept")).output().unwrap();
-    assert!(swept.status.success(), "{swept:?}");
-    let sweep = here("swept/report.html");
-
-    let modes = here("modes.html");
-    let scene = machine_scene_path("misaligned_bearings");
-    let printed = (host().arg("modes").arg(scene).arg("--html").arg(&modes)).output();
-    assert!(printed.unwrap().status.success());
+    folder.put("sweep.toml", lines);
+    folder.ran("sweep sweep.toml --out swept").good();
+    let modes = "modes @machines/misaligned_bearings --html modes.html";
+    folder.ran(modes).good();
 
     println!("{size} bytes");
+    let [record, sweep, modes] =
+        ["record/report.html", "swept/report.html", "modes.html"].map(|name| folder.at(name));
     browser.check("report.mjs", &[&run, &machine, &record, &sweep, &modes]);
 }

@@ -10,16 +10,12 @@ use firmware_bench::record::narrative::Event;
 use firmware_bench::record::replay::replay;
 use firmware_bench::run::controller as bench;
 use serde_json::Value;
-use std::fs;
-use std::path::Path;
-use std::process::Output;
 use supervisor::{
     Config, Core, Events, NO_STATE, Prepared, Q, RotorSupervisor, Scalar, Stamp, Status, Supervisor,
 };
+use system_tests::ran::{Folder, has, list};
 use system_tests::rig::{config, landing, sample, shaft};
 use system_tests::storm::{AnyBits, Chance, Storm};
-use system_tests::{host, run_scene, scene_path};
-use tempfile::TempDir;
 use test_support::records::written;
 
 /// A landing of one plane, of a core without floating point, and of a rotor.
@@ -56,12 +52,12 @@ fn what_was_written_is_read_and_replays() {
         let replay = event.replay.unwrap();
         assert_eq!(replay.differing, 0);
         assert!(replay.ticks > planes * 48, "{replay:?}");
-        let narrative = event.narrative().unwrap();
+        let told = event.narrative().unwrap();
         assert_eq!(
-            (narrative.outcome, narrative.touches, narrative.landings),
+            (told.outcome, told.touches, told.landings),
             ("levitated", Some(1), 1)
         );
-        // A tick with other inputs is found.
+        // A tick that was told something else is found.
         let mut wrong = file.clone();
         let entry = wrong.records[0].entries.get_mut(&40).unwrap();
         entry.position[0] ^= 1 << 16;
@@ -81,17 +77,17 @@ fn replay_of(records: &[&PlaneRecord]) -> (usize, Option<u32>) {
 /// What is found out of whatever a file has is a number in its interval, and a contact ends after it began.
 fn finds_sound_figures(file: &RecordFile, name: &str) {
     for found in file.events().iter().filter_map(Event::findings) {
-        let identified = &found.identified;
+        let told = &found.identified;
         let all = [
-            identified.friction_coefficient,
-            identified.restitution,
-            identified.load_x_n,
-            identified.load_y_n,
-            identified.eccentricity_m,
-            identified.clearance_m,
+            told.friction_coefficient,
+            told.restitution,
+            told.load_x_n,
+            told.load_y_n,
+            told.eccentricity_m,
+            told.clearance_m,
         ];
         for Estimate { value, low, high } in all.into_iter().flatten() {
-            assert!(low <= value && value <= high, "{name}: {identified:?}");
+            assert!(low <= value && value <= high, "{name}: {told:?}");
         }
         for contact in &found.contacts {
             assert!(contact.from_tick <= contact.to_tick, "{name}: {contact:?}");
@@ -156,12 +152,12 @@ fn a_bearing_that_is_switched_off_is_no_recovery() {
         plane.tick(&at);
     }
     let file = RecordFile::of(&written(&plane.record().unwrap()));
-    let narrative = file.events()[0].narrative().unwrap();
-    assert_eq!(narrative.outcome, "bearing off");
+    let told = file.events()[0].narrative().unwrap();
+    assert_eq!(told.outcome, "bearing off");
     assert!(
-        narrative.paragraph(0.0).contains("Look at the machine"),
+        told.paragraph(0.0).contains("Look at the machine"),
         "{}",
-        narrative.paragraph(0.0)
+        told.paragraph(0.0)
     );
     // One plane of two says nothing of the machine.
     let [.., rotor] = landings();
@@ -196,23 +192,13 @@ fn a_replay_ends_where_the_configuration_changes() {
     assert_eq!(replay.ticks, at - record.head.state_at as usize);
 }
 
-fn review(file: &Path, more: &[&str]) -> Output {
-    let mut command = host();
-    command.arg("review").arg(file).args(more);
-    command.output().expect("the host starts")
-}
-
 /// A run leaves a record; a person reads what happened, and a program the same.
 #[test]
 fn a_person_and_a_program_read_what_happened() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    let scene = scene_path("overload_then_release");
-    assert!(run_scene(&scene, &out, &[]).status.success());
-    let file = out.join("record_supervisor.bin");
-    let shown = review(&file, &[]);
-    let text = String::from_utf8(shown.stdout).unwrap();
-    assert!(shown.status.success(), "{text}");
+    let folder = Folder::fresh();
+    folder.ran("run @overload_then_release --out .").good();
+    let review = |more: &str| folder.ran(&format!("review record_supervisor.bin {more}"));
+    let text = review("").good();
     for word in [
         "touch",
         "the levitation controller has the bearing again",
@@ -224,40 +210,36 @@ fn a_person_and_a_program_read_what_happened() {
         "[N]",
         "to the end of the event",
     ] {
-        assert!(text.contains(word), "{word} is not in\n{text}");
+        has(&text, &[word]);
     }
-    let json = review(&file, &["--json"]);
-    let value: Value = serde_json::from_slice(&json.stdout).unwrap();
+    let told = review("--json").json();
     assert_eq!(
-        (&value["intact"], &value["format"]),
+        (&told["intact"], &told["format"]),
         (&true.into(), &3.into())
     );
-    assert_eq!(value["summary"]["outcome"], "levitated");
-    assert_eq!(value["summary"]["coast_down"], false);
-    assert_eq!(value["replay"]["differing"], 0);
-    assert!(value["replay"]["ticks"].as_u64() > Some(300));
-    let text = fs::read(out.join("verdict.json")).unwrap();
-    let verdict: Value = serde_json::from_slice(&text).unwrap();
+    assert_eq!(told["summary"]["outcome"], "levitated");
+    assert_eq!(told["summary"]["coast_down"], false);
+    assert_eq!(told["replay"]["differing"], 0);
+    assert!(told["replay"]["ticks"].as_u64() > Some(300));
+    let verdict = folder.json("verdict.json");
     let supervision = &verdict["policies"]["supervisor"]["supervision"];
-    assert_eq!(value["summary"]["landings"], supervision["landings"]);
-    let ticks = value["planes"][0]["ticks"].as_array().unwrap();
-    let csv = String::from_utf8(review(&file, &["--csv"]).stdout).unwrap();
-    assert_eq!(csv.lines().count(), 1 + ticks.len());
+    assert_eq!(told["summary"]["landings"], supervision["landings"]);
+    let ticks = list(&told["planes"][0]["ticks"]);
+    assert_eq!(review("--csv").good().lines().count(), 1 + ticks.len());
 
     // Damaged: what is whole is shown, and the exit code is that of bad input.
-    let mut bytes = fs::read(&file).unwrap();
+    let mut bytes = folder.bytes("record_supervisor.bin");
     let at = bytes.len() / 2;
     bytes[at] ^= 1;
-    fs::write(&file, &bytes).unwrap();
-    let shown = review(&file, &[]);
-    assert_eq!(shown.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&shown.stderr).contains("are of no whole section"));
-    assert!(String::from_utf8_lossy(&shown.stdout).contains("ENGAGED"));
-    let json = review(&file, &["--json"]);
-    assert_eq!(json.status.code(), Some(2));
-    let value: Value = serde_json::from_slice(&json.stdout).unwrap();
-    assert_eq!(value["intact"], false);
-    assert!(value["error"].as_str().unwrap().contains("bytes"));
+    folder.put("record_supervisor.bin", &bytes);
+    let shown = review("");
+    has(&shown.printed, &["ENGAGED"]);
+    has(&shown.fails(2), &["are of no whole section"]);
+    let json = review("--json");
+    let told: Value = serde_json::from_str(&json.printed).unwrap();
+    json.fails(2);
+    assert_eq!(told["intact"], false);
+    has(told["error"].as_str().unwrap(), &["bytes"]);
 }
 
 /// A stamp comes back.

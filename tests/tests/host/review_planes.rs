@@ -2,37 +2,19 @@
 
 use firmware_bench::record::file::{PlaneRecord, RecordFile};
 use firmware_bench::record::shapes::Shapes;
-use serde_json::Value;
 use std::f64::consts::TAU;
-use std::fs;
-use std::path::Path;
-use std::process::Output;
 use supervisor::Mode;
-use system_tests::{host, machine_scene_path, run_scene};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, has};
 
 /// The records of both planes of a run, as firmware would write them one after the other.
-fn record_of_a_rotor(folder: &Path) -> Vec<u8> {
-    let out = folder.join("run");
-    let scene = machine_scene_path("overload_of_a_flexible_rotor");
-    let ran = run_scene(&scene, &out, &["--no-trace"]);
-    assert!(ran.status.success(), "{ran:?}");
-    let files = fs::read_dir(out)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
-    let mut records: Vec<_> = files
-        .filter(|path| path.extension().is_some_and(|end| end == "bin"))
-        .collect();
-    records.sort();
+fn record_of_a_rotor(folder: &Folder) -> Vec<u8> {
+    let run = "run @machines/overload_of_a_flexible_rotor --out run --no-trace";
+    folder.ran(run).good();
+    let mut records = folder.names("run");
+    records.retain(|name| name.ends_with(".bin"));
     assert_eq!(records.len(), 2, "{records:?}");
-    let read = |path| fs::read(path).unwrap();
+    let read = |name: &String| folder.bytes(&format!("run/{name}"));
     records.iter().flat_map(read).collect()
-}
-
-fn review(file: &Path, more: &[&str]) -> Output {
-    let mut command = host();
-    command.arg("review").arg(file).args(more);
-    command.output().expect("the host starts")
 }
 
 /// Rows of a table, cells separated by two blanks and more.
@@ -53,14 +35,10 @@ fn rows_of(text: &str, heading: &str) -> Vec<Vec<String>> {
 /// What is printed of both planes is on the page, to the last digit.
 #[test]
 fn the_page_of_a_rotor_has_what_is_printed() {
-    let folder = TempDir::new().unwrap();
-    let here = |name: &str| folder.path().join(name);
-    fs::write(here("both.bin"), record_of_a_rotor(folder.path())).unwrap();
-    let out = here("page").display().to_string();
-    let shown = review(&here("both.bin"), &["--out", &out]);
-    let text = String::from_utf8(shown.stdout).unwrap();
-    assert!(shown.status.success(), "{text}");
-    let page = fs::read_to_string(here("page/report.html")).unwrap();
+    let folder = Folder::fresh();
+    folder.put("both.bin", record_of_a_rotor(&folder));
+    let text = folder.ran("review both.bin --out page").good();
+    let page = folder.text("page/report.html");
 
     let planes = rows_of(&text, "figure");
     assert_eq!(planes[0], ["figure", "plane 0", "plane 1"]);
@@ -76,15 +54,12 @@ fn the_page_of_a_rotor_has_what_is_printed() {
     let shapes = rows_of(&text, "both planes in contact");
     assert_eq!(shapes.len(), 3, "{shapes:?}");
     for row in planes[1..].iter().chain(&shapes[1..]) {
-        let [name, cells @ ..] = &row[..] else {
-            panic!("{row:?}")
-        };
-        let cells: String = cells
-            .iter()
-            .map(|cell| format!("<td>{cell}</td>"))
-            .collect();
-        let row = format!("<th scope=\"row\">{name}</th>{cells}</tr>");
-        assert!(page.contains(&row), "{row} is not on the page");
+        let cells = row[1..].iter().map(|cell| format!("<td>{cell}</td>"));
+        let cells: String = cells.collect();
+        has(
+            &page,
+            &[&format!("<th scope=\"row\">{}</th>{cells}</tr>", row[0])],
+        );
     }
     for said in [
         "all to the last bit as they are recorded.",
@@ -94,20 +69,15 @@ fn the_page_of_a_rotor_has_what_is_printed() {
         "<caption>Modes of the recorded ticks</caption>",
         "<caption>The largest of each, to the end of the event</caption>",
     ] {
-        assert!(page.contains(said), "{said}");
+        has(&page, &[said]);
     }
 
     // The sentence has the sum and the worse of what stands there.
-    let json: Value =
-        serde_json::from_slice(&review(&here("both.bin"), &["--json"]).stdout).unwrap();
+    let json = folder.ran("review both.bin --json").json();
     let touches = planes.iter().find(|row| row[0] == "touches").unwrap();
     let sum: u64 = touches[1..].iter().map(|n| n.parse::<u64>().unwrap()).sum();
     assert_eq!(json["summary"]["touches"], sum);
-    assert!(
-        json["shapes"]["pairs"].as_u64() > Some(0),
-        "{}",
-        json["shapes"]
-    );
+    assert!(json["shapes"]["pairs"].as_u64() > Some(0), "{json}");
 }
 
 /// Two planes that move as they are told to, in whirl.
@@ -135,13 +105,10 @@ fn circle(radius_m: f64, rate_hz: f64, t_s: f64) -> [f64; 2] {
 /// A cylindrical and a conical whirl, each with its rate and direction, and both at once.
 #[test]
 fn both_shapes_are_told_apart() {
-    let folder = TempDir::new().unwrap();
-    let file = RecordFile::of(&record_of_a_rotor(folder.path()));
+    let file = RecordFile::of(&record_of_a_rotor(&Folder::fresh()));
     let near = |found: f64, wanted: f64| {
-        assert!(
-            (found - wanted).abs() < 1e-3 * wanted.abs() + 1e-9,
-            "{found} for {wanted}"
-        );
+        let off = (found - wanted).abs();
+        assert!(off < 1e-3 * wanted.abs() + 1e-9, "{found} for {wanted}");
     };
     let both = |[x, y]: [f64; 2], sign: f64| [[x, y], [sign * x, sign * y]];
 

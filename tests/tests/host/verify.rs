@@ -8,11 +8,9 @@ use firmware_bench::run::verify::{Track, Verification, check, check_scenes, veri
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::Method;
-use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
-use system_tests::{run_scene, scene, scene_names, scene_path};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, edited, has, lacks, number, scene_text};
+use system_tests::{scene, scene_names};
 
 fn ridden(scene: &Scene, kind: PolicyKind) -> (Figures, Trace) {
     run(scene, kind, Keep::Trace, &mut |_| {}).unwrap()
@@ -111,46 +109,34 @@ fn the_estimate_sees_what_is_held_over_parts() {
         "force_n = [6.0, 0.0]\nshape = \"sine\"\nfrequency_hz = 45.0",
     );
     let ramp = ("lag_s = 1.6e-4", "lag_s = 1.6e-4\nslew_n_s = 2e6");
-    let folder = TempDir::new().unwrap();
-    let error_and_estimate = |edits: &[(&str, &str)], kind| {
-        let scene = Scene::load(&edited(folder.path(), "overload_then_release", edits)).unwrap();
-        let (_, trace, v) = verified(&scene, kind);
-        let accuracy = Accuracy {
-            parts: 64,
-            ..Accuracy::default()
-        };
-        let mut fine = Trace::default();
-        let recorders = Recorders {
-            planes: vec![&mut fine],
-            axis: None,
-        };
-        record(&scene, kind, recorders, accuracy, &mut |_| {}).unwrap();
-        let apart_m = (trace.rows.iter().zip(&fine.rows))
-            .map(|(a, b)| (a.plant.position_m - b.plant.position_m).norm())
-            .fold(0.0, f64::max);
-        let error = apart_m / scene.clearance_m(0);
-        let estimate = v.largest_difference_clearances;
-        println!("error {error:.1e}, estimate {estimate:.1e}");
-        (error, estimate)
-    };
     for (edits, kind) in [
         (&[exact, slow, sine][..], PolicyKind::Passive),
         (&[exact, ramp], PolicyKind::Levitation),
     ] {
-        let (error, estimate) = error_and_estimate(edits, kind);
+        let text = edited(&scene_text("overload_then_release"), edits);
+        let scene = Scene::parse("edited.toml", &text).unwrap();
+        let (_, trace, v) = verified(&scene, kind);
+        let rigour = Accuracy {
+            parts: 64,
+            ..Accuracy::default()
+        };
+        let mut fine = [Trace::default()];
+        let recorders = Recorders::of_planes(&mut fine);
+        record(&scene, kind, recorders, rigour, &mut |_| {}).unwrap();
+        let apart_m = (trace.rows.iter().zip(&fine[0].rows))
+            .map(|(a, b)| (a.plant.position_m - b.plant.position_m).norm())
+            .fold(0.0, f64::max);
+        let error = apart_m / scene.clearance_m(0);
+        let ratio = v.largest_difference_clearances / error;
+        println!("error {error:.1e}, estimate {ratio:.1e} of it");
         assert!(error > 1e-7 && error < 1e-5, "{error:e}");
-        assert!(
-            estimate > 0.3 * error && estimate < 3.0 * error,
-            "{estimate:e} for {error:e}"
-        );
+        assert!(ratio > 0.3 && ratio < 3.0, "{ratio} of {error:e}");
     }
 }
 
 /// A check that would go on and on ends, and the run stays.
 #[test]
 fn a_check_has_an_end() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("stiff.toml");
     let text = r#"
         title = "a shaft too stiff to follow without a matrix"
         run = { duration_s = 1.0, sample_rate_hz = 1000, policies = ["passive"] }
@@ -161,16 +147,11 @@ fn a_check_has_an_end() {
         friction = { coefficient = 0.0 }
         verdict = { whirl_speed_m_s = 1.0 }
     "#;
-    fs::write(&path, text).unwrap();
-    let result = run_scene(
-        &path,
-        &folder.path().join("out"),
-        &["--verify", "--no-trace"],
-    );
-    let table = String::from_utf8(result.stdout).unwrap();
-    let error = String::from_utf8(result.stderr).unwrap();
-    println!("{table}\n{error}");
-    assert!(error.contains("steps are not enough"), "{error}");
+    let folder = Folder::fresh();
+    folder.put("stiff.toml", text);
+    let ran = folder.ran("run stiff.toml --out out --verify --no-trace");
+    println!("{}\n{}", ran.printed, ran.said);
+    has(&ran.said, &["steps are not enough"]);
 }
 
 /// A check that cannot be trusted leaves the run as it is, and says why.
@@ -183,51 +164,26 @@ fn a_failed_check_leaves_the_run() {
     let no_file = None::<&mut TraceFiles<fs::File>>;
     let run = recorded(&scene, kind, &[broken], no_file, &mut |_| {}).unwrap();
     let error = run.whole.verification.unwrap().unwrap_err();
-    assert!(
-        error.contains("checked by") && error.contains("policy supervisor"),
-        "{error}"
-    );
+    has(&error, &["checked by", "policy supervisor"]);
     assert_eq!(run.whole.verdict.figures, ridden(&scene, kind).0);
-}
-
-fn verdict(out: &Path) -> Value {
-    serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap()
-}
-
-/// A scene with something replaced, in a folder of its own.
-fn edited(folder: &Path, name: &str, edits: &[(&str, &str)]) -> PathBuf {
-    let mut text = fs::read_to_string(scene_path(name)).unwrap();
-    for (from, to) in edits {
-        assert!(text.contains(from), "{from} is not in {name}");
-        text = text.replacen(from, to, 1);
-    }
-    let path = folder.join("edited.toml");
-    fs::write(&path, text).unwrap();
-    path
 }
 
 /// All that `--verify` does to a verdict is to add to it, and nothing at all to the traces.
 #[test]
 fn checks_change_nothing_else() {
-    let folder = TempDir::new().unwrap();
-    let scene = edited(
-        folder.path(),
-        "overload_then_release",
-        &[("duration_s = 0.2", "duration_s = 0.04")],
-    );
-    let (plain, checked) = (folder.path().join("plain"), folder.path().join("checked"));
-    let result = run_scene(&scene, &plain, &[]);
-    let table = String::from_utf8(result.stdout).unwrap();
-    assert!(result.status.success() && !table.contains("estimated error"));
-    let result = run_scene(&scene, &checked, &["--verify", "--threads", "3"]);
-    let table = String::from_utf8(result.stdout).unwrap();
-    assert!(result.status.success(), "{:?}", result.stderr);
+    let folder = Folder::fresh();
+    let shorter = [("duration_s = 0.2", "duration_s = 0.04")];
+    folder.scene("short.toml", "overload_then_release", &shorter);
+    let table = folder.ran("run short.toml --out plain").good();
+    lacks(&table, &["estimated error"]);
+    let table = folder
+        .ran("run short.toml --out checked --verify --threads 3")
+        .good();
     // Names may be broken between their words.
-    for words in ["estimated", "series 1e-11", "collocation"] {
-        assert!(table.contains(words), "{words} is missing in\n{table}");
-    }
+    has(&table, &["estimated", "series 1e-11", "collocation"]);
 
-    let (mut a, mut b) = (verdict(&plain), verdict(&checked));
+    let [mut a, mut b] =
+        ["plain", "checked"].map(|out| folder.json(&format!("{out}/verdict.json")));
     for policy in ["passive", "radial", "levitation", "supervisor"] {
         assert_eq!(a["policies"][policy]["method"], "series");
         for v in [&mut a, &mut b] {
@@ -242,21 +198,23 @@ fn checks_change_nothing_else() {
         assert_eq!(v["same_outcome"], true);
         assert_eq!(v["threshold_clearances"], 1e-3);
         assert!(v["same_modes"].is_boolean() && v["mode_changes"].is_number());
-        let estimate = v["estimated_error_clearances"].as_f64().unwrap();
-        assert!(estimate <= v["largest_difference_clearances"].as_f64().unwrap());
+        let [estimate, largest] = [
+            "estimated_error_clearances",
+            "largest_difference_clearances",
+        ]
+        .map(|k| number(&v[k]));
+        assert!(estimate <= largest);
         assert!(v["differs_from_s"].is_null() || v["differs_from_s"].is_number());
         assert_eq!(v["checks"][0]["method"], "series");
         assert_eq!(v["checks"][1]["method"], "collocation");
-        let trace = format!("trace_{policy}.parquet");
-        assert_eq!(
-            fs::read(plain.join(&trace)).unwrap(),
-            fs::read(checked.join(&trace)).unwrap()
-        );
+        let [one, other] =
+            ["plain", "checked"].map(|out| folder.bytes(&format!("{out}/trace_{policy}.parquet")));
+        assert!(one == other, "{policy}");
     }
     assert_eq!(a, b);
-    let report = |out: &Path| fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(report(&checked).contains("<caption>Checks</caption>"));
-    assert!(!report(&plain).contains("<caption>Checks</caption>"));
+    let caption = "<caption>Checks</caption>";
+    has(&folder.text("checked/report.html"), &[caption]);
+    lacks(&folder.text("plain/report.html"), &[caption]);
 }
 
 /// A verdict that hangs on the error of integration: the limit of whirl between the peak speeds of a
@@ -274,119 +232,82 @@ fn a_contradicted_outcome_is_said_and_ends_with_exit_code_1() {
         "rtol = 1e-2\nmethod = \"collocation\"\n\n[verdict]\nwhirl_speed_m_s = {}\n\n[rotor]",
         f64::midpoint(a, b)
     );
-    let folder = TempDir::new().unwrap();
+    let folder = Folder::fresh();
     let edits = [
         ("sample_rate_hz = 50000", "sample_rate_hz = 500"),
         ("[rotor]", &limit),
     ];
-    let scene = edited(folder.path(), name, &edits);
-    let out = folder.path().join("out");
-    assert!(run_scene(&scene, &out, &[]).status.success());
-    let result = run_scene(&scene, &out, &["--verify"]);
-    let error = String::from_utf8(result.stderr).unwrap();
-    let table = String::from_utf8(result.stdout).unwrap();
-    assert_eq!(result.status.code(), Some(1), "{error}");
-    assert!(
-        error.contains("policy passive") && error.contains("but"),
-        "{error}"
-    );
-    assert!(table.contains("OTHER"), "{table}");
-    assert_eq!(
-        verdict(&out)["policies"]["passive"]["verification"]["same_outcome"],
-        false
-    );
-    let report = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(report.contains("OTHER than the run"));
+    folder.scene("edited.toml", name, &edits);
+    folder.ran("run edited.toml --out out").good();
+    let ran = folder.ran("run edited.toml --out out --verify");
+    has(&ran.printed, &["OTHER"]);
+    has(&ran.fails(1), &["policy passive", "but"]);
+    let verdict = folder.json("out/verdict.json");
+    let v = &verdict["policies"]["passive"]["verification"];
+    assert_eq!(v["same_outcome"], false);
+    has(&folder.text("out/report.html"), &["OTHER than the run"]);
 }
 
-/// What `auto` chose is in the verdict.
+/// What `auto` came to is in the verdict.
 #[test]
 fn the_method_that_ran_is_named() {
-    let folder = TempDir::new().unwrap();
-    let scene = edited(
-        folder.path(),
-        "benchmark_b3c",
-        &[("[rotor]", "rtol = 1e-5\n\n[rotor]")],
+    let folder = Folder::fresh();
+    let crude = [("[rotor]", "rtol = 1e-5\n\n[rotor]")];
+    folder.scene("edited.toml", "benchmark_b3c", &crude);
+    has(
+        &folder.ran("run edited.toml --out out").good(),
+        &["collocation"],
     );
-    let out = folder.path().join("out");
-    let result = run_scene(&scene, &out, &[]);
-    assert!(result.status.success());
-    assert!(String::from_utf8_lossy(&result.stdout).contains("collocation"));
-    assert_eq!(
-        verdict(&out)["policies"]["passive"]["method"],
-        "collocation"
-    );
-    let report = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(report.contains("<td>collocation</td>"));
+    let verdict = folder.json("out/verdict.json");
+    assert_eq!(verdict["policies"]["passive"]["method"], "collocation");
+    has(&folder.text("out/report.html"), &["<td>collocation</td>"]);
 }
 
 /// The supervisor is made for 10 to 50 kHz; other rates run, with a word of warning.
 #[test]
 fn control_rates_beyond_the_supervisors_are_warned_of() {
-    let folder = TempDir::new().unwrap();
-    for (rate, warned) in [("50000", false), ("60000", true)] {
-        let scene = edited(
-            folder.path(),
-            "overload_then_release",
-            &[
-                (
-                    "sample_rate_hz = 20000",
-                    &format!("sample_rate_hz = {rate}"),
-                ),
-                ("duration_s = 0.2", "duration_s = 0.03"),
-            ],
-        );
-        let result = run_scene(&scene, &folder.path().join("out"), &[]);
-        let error = String::from_utf8(result.stderr).unwrap();
-        assert!(result.status.success(), "{error}");
-        assert_eq!(
-            error.contains("edited.toml:12: run.sample_rate_hz"),
-            warned,
-            "{error}"
-        );
-        assert_eq!(error.contains("warning"), warned, "{error}");
+    let folder = Folder::fresh();
+    for (rate, warned) in [(50_000, false), (60_000, true)] {
+        let edits = [
+            (
+                "sample_rate_hz = 20000",
+                &*format!("sample_rate_hz = {rate}"),
+            ),
+            ("duration_s = 0.2", "duration_s = 0.03"),
+        ];
+        folder.scene("edited.toml", "overload_then_release", &edits);
+        let ran = folder.ran("run edited.toml --out out");
+        let error = ran.said.clone();
+        ran.good();
+        for said in ["edited.toml:12: run.sample_rate_hz", "warning"] {
+            assert_eq!(error.contains(said), warned, "{error}");
+        }
     }
 }
 
-/// A levitation loop that is unstable or badly damped is no baseline, and the reader is warned; one that swings out, or damps
+/// A levitation loop that is unstable or badly damped is no baseline, and the reader is told; one that swings out, or damps
 /// well, shows who is right.
 #[test]
 fn a_levitation_loop_that_hardly_holds_is_warned_of() {
-    let folder = TempDir::new().unwrap();
+    let folder = Folder::fresh();
     for (damping, words) in [
         ("0.0", Some("not stable")),
         ("250.0", Some("badly damped")),
         ("1500.0", None),
     ] {
-        let scene = edited(
-            folder.path(),
-            "overload_then_release",
-            &[(
-                "derivative_n_s_m = 1500.0",
-                &format!("derivative_n_s_m = {damping}"),
-            )],
-        );
+        let damper = format!("derivative_n_s_m = {damping}");
+        let edits = [("derivative_n_s_m = 1500.0", &damper[..])];
+        let scene = folder.scene("edited.toml", "overload_then_release", &edits);
         let warnings = Scene::load(&scene).unwrap().warnings;
         println!("{damping}: {warnings:?}");
-        let [warning] = &warnings[..] else {
-            assert!(words.is_none() && warnings.is_empty(), "{warnings:?}");
+        let Some(words) = words else {
+            assert_eq!(warnings, [""; 0]);
             continue;
         };
-        assert!(
-            words.is_some_and(|words| warning.contains(words)),
-            "{warning}"
-        );
-        assert!(warning.contains("edited.toml:") && warning.contains("levitation"));
-        for word in ["run", "advise"] {
-            let out = folder.path().join("out").display().to_string();
-            let path = scene.display().to_string();
-            let args = match word {
-                "run" => vec![word, &path, "--out", &out],
-                _ => vec![word, &path],
-            };
-            let result = system_tests::host().args(args).output().unwrap();
-            let shown = String::from_utf8_lossy(&result.stderr);
-            assert!(shown.contains(words.unwrap()), "{word}: {shown}");
+        assert_eq!(warnings.len(), 1);
+        has(&warnings[0], &[words, "edited.toml:", "levitation"]);
+        for line in ["run edited.toml --out out", "advise edited.toml"] {
+            has(&folder.ran(line).said, &[words]);
         }
     }
 }

@@ -8,11 +8,10 @@ use firmware_studies::overloads::catalogue::cases;
 use firmware_studies::overloads::contenders::{Contender, levitation};
 use firmware_studies::overloads::impact::recoverable_m_s;
 use firmware_studies::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
-use serde_json::Value;
 use std::collections::BTreeSet;
 use system_tests::browser::Browser;
+use system_tests::ran::{Folder, has, list, number};
 use system_tests::terminal::{assert_fits, tables};
-use system_tests::{host, scene_path};
 
 /// Promises that a quick run does not keep; the documentation says why.
 const MISSED: [&str; 3] = [
@@ -22,23 +21,10 @@ const MISSED: [&str; 3] = [
 ];
 
 /// What is printed, and the folder with the same as JSON and as a page.
-fn quick() -> (String, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("overloads");
-    let output = host()
-        .args(["overloads", "--quick"])
-        .arg("--scene")
-        .arg(scene_path("overload_then_release"))
-        .arg("--out")
-        .arg(&out)
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    (String::from_utf8(output.stdout).unwrap(), folder)
+fn quick() -> (String, Folder) {
+    let folder = Folder::fresh();
+    let line = "overloads --quick --scene @overload_then_release --out overloads";
+    (folder.ran(line).good(), folder)
 }
 
 /// Every promise is kept but the ones that are known not to be, and those are still missed: a promise that
@@ -48,36 +34,35 @@ fn promises_of_a_quick_run() {
     let (text, folder) = quick();
     assert_fits(&text, 80);
     assert!(tables(&text) >= 2, "{text}");
-    let json = std::fs::read(folder.path().join("overloads/overloads.json")).unwrap();
-    let root: Value = serde_json::from_slice(&json).unwrap();
-    let promises = root["promises"].as_array().unwrap();
+    let root = folder.json("overloads/overloads.json");
+    let promises = list(&root["promises"]);
     assert!(promises.len() > 40);
     let missed: BTreeSet<&str> = (promises.iter())
-        .filter(|p| !p["holds"].as_bool().unwrap())
+        .filter(|p| p["holds"] == false)
         .map(|p| p["name"].as_str().unwrap())
         .collect();
     assert_eq!(missed, MISSED.into_iter().collect());
     for p in promises {
-        let (bound, measured) = (p["bound"].as_f64().unwrap(), p["measured"].as_f64());
+        let (bound, measured) = (number(&p["bound"]), p["measured"].as_f64());
         let at_least = p["at_least"].as_bool().unwrap();
         let holds = measured.is_some_and(|m| if at_least { m >= bound } else { m <= bound });
-        assert_eq!(holds, p["holds"].as_bool().unwrap(), "{p}");
+        assert_eq!(p["holds"], holds, "{p}");
     }
     // Every key is in the page that explains them; results have those of a verdict.
     let pages = ["measured/overloads", "host/results"].map(|page| {
         let path = system_tests::root().join(format!("docs/src/{page}.md"));
         std::fs::read_to_string(path).unwrap()
     });
-    for (of, list) in root.as_object().unwrap() {
-        let rows = list.as_array().unwrap();
-        for key in rows.iter().flat_map(|row| row.as_object().unwrap().keys()) {
+    for (of, rows) in root.as_object().unwrap() {
+        let rows = list(rows).iter();
+        for key in rows.flat_map(|row| row.as_object().unwrap().keys()) {
             let name = format!("`{key}`");
             let known = pages[0].contains(&name) || (of == "results" && pages[1].contains(&name));
             assert!(known, "{of}[].{key}");
         }
-        assert!(pages[0].contains(&format!("`{of}[]`")), "{of}");
+        has(&pages[0], &[&format!("`{of}[]`")]);
     }
-    let results = root["results"].as_array().unwrap();
+    let results = list(&root["results"]);
     for row in results {
         for key in [
             "scene",
@@ -91,54 +76,37 @@ fn promises_of_a_quick_run() {
         }
         assert!(row["error"].is_null(), "{row}");
     }
-    let files = std::fs::read_dir(folder.path().join("overloads")).unwrap();
-    let names: BTreeSet<String> = files
-        .map(|f| f.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
-    assert_eq!(
-        names,
-        ["overloads.html", "overloads.json"]
-            .map(str::to_owned)
-            .into()
-    );
-    let page = std::fs::read_to_string(folder.path().join("overloads/overloads.html")).unwrap();
+    let names = ["overloads.html", "overloads.json"];
+    assert_eq!(folder.names("overloads"), names);
+    let page = folder.text("overloads/overloads.html");
     let scenes: BTreeSet<&str> = (results.iter())
         .map(|r| r["scene"].as_str().unwrap())
         .collect();
-    assert_eq!(
-        page.matches("<details class=\"part\">").count(),
-        scenes.len()
-    );
+    let parts = page.matches("<details class=\"part\">").count();
+    assert_eq!(parts, scenes.len());
     // The conclusion comes first, and names what is not kept.
     let (_, headline) = page.split_once("<p class=\"headline\">").unwrap();
     let (headline, rest) = headline.split_once("</p>").unwrap();
     assert!(rest.find("</header>") < rest.find("<nav"), "{headline}");
     for name in MISSED {
-        let name = name.replace('\'', "&#39;");
-        assert!(headline.contains(&name), "{name} in {headline}");
+        has(headline, &[&name.replace('\'', "&#39;")]);
     }
 
-    // The scene of one's own: reported, and compared, and no promise is about it.
-    let harms = root["against_levitation"].as_array().unwrap();
-    let own = harms.last().unwrap();
-    assert!(
-        own["place"]
-            .as_str()
-            .unwrap()
-            .starts_with("own, 20 kHz: AMB rotor")
-    );
+    // The scene of one's own: told, and compared, and no promise is about it.
+    let own = list(&root["against_levitation"]).last().unwrap();
+    let place = own["place"].as_str().unwrap();
+    assert!(place.starts_with("own, 20 kHz: AMB rotor"), "{place}");
     assert_eq!((&own["seeds"], &own["recovered"]), (&1.into(), &1.into()));
     let of_own = results.iter().filter(|row| row["plant"] == "own");
     assert_eq!(of_own.count(), 4);
     let (_, section) = page.split_once(" Own scene: AMB rotor").unwrap();
     let (section, _) = section.split_once("</section>").unwrap();
     for policy in ["passive", "radial", "levitation", "supervisor"] {
-        let cell = format!("<td class=\"words\">{policy}</td>");
-        assert!(section.contains(&cell), "{policy}");
+        has(section, &[&format!("<td class=\"words\">{policy}</td>")]);
     }
 
     if let Some(browser) = Browser::found() {
-        let page = folder.path().join("overloads/overloads.html");
+        let page = folder.at("overloads/overloads.html");
         browser.check("chapters.mjs", &[&page]);
     }
 }
@@ -146,20 +114,13 @@ fn promises_of_a_quick_run() {
 /// Two scenes of one title would be taken for one.
 #[test]
 fn a_title_is_for_one_scene() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = scene_path("overload_then_release");
-    let output = (host().args(["overloads", "--quick", "--out"]))
-        .arg(folder.path().join("out"))
-        .arg("--scene")
-        .arg(&scene)
-        .arg("--scene")
-        .arg(&scene)
-        .output()
-        .unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.contains("the title \"AMB rotor: overload"), "{error}");
-    assert!(!folder.path().join("out").exists());
+    let folder = Folder::fresh();
+    let twice = "--scene @overload_then_release --scene @overload_then_release";
+    let said = folder
+        .ran(&format!("overloads --quick --out out {twice}"))
+        .fails(2);
+    has(&said, &["the title \"AMB rotor: overload"]);
+    assert!(!folder.at("out").exists());
 }
 
 /// The kept loops are stable, calm enough and quiet enough, and `tuned` is better than any other that

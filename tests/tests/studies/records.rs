@@ -2,7 +2,7 @@
 
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::run::closed_loop::{Accuracy, Keep, Recorders, record, run};
-use firmware_bench::run::trace::{Recorder, TraceRow};
+use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::run_all;
 use firmware_studies::machines::rotors::RotorCase;
@@ -10,7 +10,7 @@ use firmware_studies::paired::machines::MachineClass;
 use firmware_studies::paired::{harm, whole_rotors};
 use supervisor::Mode;
 
-/// Outcome of a run with a record.
+/// What came of a run with a record.
 struct Ran {
     name: String,
     record: Option<Vec<u8>>,
@@ -18,9 +18,9 @@ struct Ran {
     recovered: Option<bool>,
 }
 
-/// All ticks from the state on are replayed, to the last bit; and how many of the events that are reported to have ended in levitation did.
+/// All ticks from the state on are replayed, to the last bit; and how many of the events that are told to have ended in levitation did.
 fn check(ran: &[Ran], planes: usize) -> (usize, usize, usize) {
-    let (mut records, mut levitated, mut right) = (0, 0, 0);
+    let (mut records, mut told, mut right) = (0, 0, 0);
     for Ran {
         name,
         record,
@@ -44,12 +44,12 @@ fn check(ran: &[Ran], planes: usize) -> (usize, usize, usize) {
             let summary = summary.unwrap_or_else(|| panic!("{name}: no summary"));
             // What is handed back is levitation's to bring in or not.
             if summary.mode == Mode::Levitated as u32 {
-                levitated += 1;
+                told += 1;
                 right += usize::from(*recovered);
             }
         }
     }
-    (records, levitated, right)
+    (records, told, right)
 }
 
 /// Hundreds of one plane: every kind of event with every kind of sensors, at the rates that machines have.
@@ -74,20 +74,13 @@ fn records_of_closed_loops_replay_to_the_bit() {
             recovered: recovered.filter(|_| only),
         }
     });
-    let (records, levitated, right) = check(&ran, 1);
+    let (records, told, right) = check(&ran, 1);
     assert!(records >= 250, "{records} records of {}", ran.len());
-    // Sensors that lie, in pairs too, are among them: of four times as many nine of some 790 are reported to levitate and do not come in.
+    // Sensors that lie, in pairs too, are among them: of four times as many nine of some 790 are told to levitate and do not come in.
     assert!(
-        levitated >= 125 && 1000 * right >= 985 * levitated,
-        "{right} of {levitated} outcomes are those of the plant"
+        told >= 125 && 1000 * right >= 985 * told,
+        "{right} of {told} outcomes are those of the plant"
     );
-}
-
-/// Nobody who wants rows; a supervisor is read out where somebody listens.
-struct Nobody;
-
-impl Recorder for Nobody {
-    fn row(&mut self, _row: &TraceRow) {}
 }
 
 /// Both planes of a rotor, from what both remembered.
@@ -110,19 +103,11 @@ fn records_of_rotors_replay_to_the_bit() {
                 config.bending_first_hz = hz as f32;
             }
         }
-        let (mut first, mut second) = (Nobody, Nobody);
-        let recorders = Recorders {
-            planes: vec![&mut first, &mut second],
-            axis: None,
-        };
-        let accuracy = Accuracy::default();
-        let ran = record(
-            &scene,
-            PolicyKind::Supervisor,
-            recorders,
-            accuracy,
-            &mut |_| {},
-        );
+        // A supervisor is read out where somebody listens.
+        let mut traces = vec![Trace::default(); 2];
+        let recorders = Recorders::of_planes(&mut traces);
+        let (kind_of, rigour) = (PolicyKind::Supervisor, Accuracy::default());
+        let ran = record(&scene, kind_of, recorders, rigour, &mut |_| {});
         let planes = ran.unwrap_or_default();
         let records: Option<Vec<Vec<u8>>> = (planes.into_iter())
             .map(|(_, read_out)| read_out?.flight_record)

@@ -10,55 +10,42 @@ use firmware_studies::campaign::Extent;
 use firmware_studies::whole_rotors::{Blow, Hardest, Incident, RotorPlant, catalogue};
 use plant_model::V2;
 use std::process::Command;
-use system_tests::{python, root};
+use system_tests::ran::{Folder, ran};
+use system_tests::{python, root, scene};
 
 #[test]
 fn harder_blows_than_levitation_alone() {
     let report = catalogue::study(Extent::Quick, &()).unwrap();
+    let named = |part: &str| -> Vec<_> {
+        let claims = report.claims.iter();
+        claims.filter(|c| c.name.contains(part)).collect()
+    };
     // Over the best PD that was found for P8 it is less than what is wanted of it, and the page says so.
     for (plant, least) in [("P5", 1.15), ("P7", 1.1), ("P8", 1.1)] {
-        let its =
-            |name: &str| name.starts_with(plant) && name.contains("hardest blow over levitation's");
-        let claims: Vec<_> = report.claims.iter().filter(|c| its(&c.name)).collect();
+        let mut claims = named("hardest blow over levitation's");
+        claims.retain(|c| c.name.starts_with(plant));
         assert!(!claims.is_empty());
         assert!(claims.iter().all(|c| c.measured >= least), "{claims:?}");
     }
-    // What an overload comes to on the walls is halved at least.
-    let of_impulse = |name: &str| name.contains("impulse of an overload");
-    let impulses: Vec<_> = (report.claims.iter())
-        .filter(|c| of_impulse(&c.name))
-        .collect();
-    assert_eq!(impulses.len(), 8);
-    assert!(impulses.iter().all(|claim| claim.holds), "{impulses:?}");
+    // What an overload comes to on the walls is halved at least; and nothing else that happens costs a recovery.
+    for (part, count) in [("impulse of an overload", 8), ("incidents: ", 12)] {
+        let claims = named(part);
+        assert_eq!(claims.len(), count);
+        assert!(claims.iter().all(|claim| claim.holds), "{claims:?}");
+    }
     // Who sees the true state does better, and not out of all proportion.
-    let of_reference = |name: &str| name.contains("over clairvoyant's");
-    let shares: Vec<f64> = (report.claims.iter())
-        .filter(|c| of_reference(&c.name))
-        .map(|c| c.measured)
-        .collect();
+    let shares = named("over clairvoyant's");
     assert_eq!(shares.len(), 4);
-    assert!(
-        shares.iter().all(|share| (0.7..=1.0).contains(share)),
-        "{shares:?}"
-    );
-    // Nothing else that happens costs a recovery.
-    let incidents: Vec<_> = (report.claims.iter())
-        .filter(|c| c.name.contains("incidents: "))
-        .collect();
-    assert_eq!(incidents.len(), 12);
-    assert!(incidents.iter().all(|c| c.holds), "{incidents:?}");
+    for share in shares {
+        assert!((0.7..=1.0).contains(&share.measured), "{share:?}");
+    }
 }
 
 /// The stored scenes with a robust loop are the plants' in all else.
 #[test]
 fn robust_loops_are_on_the_same_plants() {
     for plant in RotorPlant::all().unwrap() {
-        let file = format!(
-            "firmware-host/scenes/rotors/{}_robust.toml",
-            plant.name.to_lowercase()
-        );
-        let text = std::fs::read_to_string(root().join(file)).unwrap();
-        let mut robust = Scene::parse("robust", &text).unwrap();
+        let mut robust = scene(&format!("rotors/{}_robust", plant.name.to_lowercase()));
         let Some(WholeLevitationParams::StateSpace(own)) = robust.levitation.take() else {
             panic!("{}: no state space", plant.name);
         };
@@ -82,43 +69,29 @@ fn the_script_computes_the_stored_loops() {
     };
     let check = |folder: &std::path::Path| {
         let script = folder.join("robust.py");
-        let ran = Command::new(&python)
-            .arg(script)
-            .arg("--check")
-            .output()
-            .unwrap();
-        let shown = String::from_utf8(ran.stdout).unwrap();
-        let off: Vec<f64> = (shown.lines())
+        let ran = ran(Command::new(&python).arg(script).arg("--check"));
+        let off: Vec<f64> = (ran.printed.lines())
             .map(|line| line.split_once(' ').unwrap().1.parse().unwrap())
             .collect();
-        assert_eq!(
-            off.len(),
-            4,
-            "{shown}{}",
-            String::from_utf8_lossy(&ran.stderr)
-        );
-        (ran.status.success(), off)
+        assert_eq!(off.len(), 4, "{}{}", ran.printed, ran.said);
+        (ran.code == Some(0), off)
     };
     let scenes = root().join("firmware-host/scenes/rotors");
     let (same, off) = check(&scenes);
     assert!(same && off.iter().all(|off| *off < 1e-6), "{off:?}");
     // Of another plant it is another.
-    let copy = tempfile::tempdir().unwrap();
+    let copy = Folder::fresh();
     for name in ["p5", "p6", "p7", "p8"] {
-        for file in [format!("{name}.toml"), format!("{name}_robust.toml")] {
-            std::fs::copy(scenes.join(&file), copy.path().join(&file)).unwrap();
+        for name in [name.to_owned(), format!("{name}_robust")] {
+            copy.scene(&format!("{name}.toml"), &format!("rotors/{name}"), &[]);
         }
     }
-    std::fs::copy(scenes.join("robust.py"), copy.path().join("robust.py")).unwrap();
-    let text = std::fs::read_to_string(scenes.join("p8.toml")).unwrap();
-    let heavier = text.replace("mass_kg = 3.0", "mass_kg = 3.003");
-    assert_ne!(heavier, text);
-    std::fs::write(copy.path().join("p8.toml"), heavier).unwrap();
-    let (same, off) = check(copy.path());
-    assert!(
-        !same && off[3] > 1e-5 && off[..3].iter().all(|off| *off < 1e-6),
-        "{off:?}"
-    );
+    std::fs::copy(scenes.join("robust.py"), copy.at("robust.py")).unwrap();
+    let heavier = [("mass_kg = 3.0", "mass_kg = 3.003")];
+    copy.scene("p8.toml", "rotors/p8", &heavier);
+    let (same, off) = check(&copy.at("."));
+    let others = off[..3].iter().all(|off| *off < 1e-6);
+    assert!(!same && off[3] > 1e-5 && others, "{off:?}");
 }
 
 /// Whirl begins on the walls and against the spin, a lost blade pulls round with it, weight is carried.
@@ -228,8 +201,8 @@ fn seals_are_touched(plant: &RotorPlant, hardest: Hardest) {
 
 /// Figures of the planes under levitation alone.
 fn levitated(scene: &Scene) -> Vec<Figures> {
-    let (nobody, accuracy) = (Recorders::default(), Accuracy::default());
-    let ended = record(scene, PolicyKind::Levitation, nobody, accuracy, &mut |_| {}).unwrap();
+    let (nobody, rigour) = (Recorders::default(), Accuracy::default());
+    let ended = record(scene, PolicyKind::Levitation, nobody, rigour, &mut |_| {}).unwrap();
     ended.into_iter().map(|(figures, _)| figures).collect()
 }
 

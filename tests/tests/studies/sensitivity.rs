@@ -9,7 +9,7 @@ use firmware_studies::sensitivity::study::{Outcome, configured_wrong, of_the_cat
 use firmware_studies::trials::Trial;
 use rayon::prelude::*;
 use serde_json::Value;
-use system_tests::{host, scene_path};
+use system_tests::ran::{Folder, has, list, number, scene_text};
 
 /// A bearing of the catalogue, all its scenes: whatever is configured wrong by as much as is usual, the supervisor recovers
 /// from what levitation alone recovers from, and from nearly all that it recovers from when configured right. The one
@@ -38,18 +38,10 @@ fn configured_wrong_it_loses_next_to_nothing() {
 }
 
 /// The rows of the command on a scene.
-fn rows(more: &[&str]) -> Vec<Value> {
-    let scene = scene_path("overload_then_release");
-    let output = host()
-        .arg("sensitivity")
-        .arg(scene)
-        .arg("--json")
-        .args(more)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{output:?}");
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
-    json["rows"].as_array().unwrap().clone()
+fn rows(more: &str) -> Vec<Value> {
+    let line = format!("sensitivity @overload_then_release --json {more}");
+    let json = Folder::fresh().ran(&line).json();
+    list(&json["rows"]).to_vec()
 }
 
 fn row<'a>(rows: &'a [Value], configured: &str) -> &'a Value {
@@ -95,14 +87,9 @@ fn a_rotor_that_turns_round_near_the_wall_does_not_rest() {
 /// threads makes a difference.
 #[test]
 fn the_command_tells_every_datum_wrong() {
-    let dir = tempfile::tempdir().unwrap();
-    let run = system_tests::run_scene(
-        &scene_path("overload_then_release"),
-        dir.path(),
-        &["--json"],
-    );
-    let verdicts: Value = serde_json::from_slice(&run.stdout).unwrap();
-    let rows = rows(&["--draws", "3"]);
+    let run = "run @overload_then_release --out out --json";
+    let verdicts = Folder::fresh().ran(run).json();
+    let rows = rows("--draws 3");
     for (configured, policy) in [("levitation alone", "levitation"), ("right", "supervisor")] {
         for figure in [
             "outcome",
@@ -110,25 +97,19 @@ fn the_command_tells_every_datum_wrong() {
             "peak_contact_force_n",
             "relevitation_time_s",
         ] {
-            let (of_row, of_run) = (
-                &row(&rows, configured)[figure],
-                &verdicts["policies"][policy][figure],
-            );
+            let of_row = &row(&rows, configured)[figure];
+            let of_run = &verdicts["policies"][policy][figure];
             assert_eq!(of_row, of_run, "{configured} {figure}");
             assert!(!of_row.is_null(), "{configured} {figure}");
         }
     }
     // Eleven data, too small and too large.
     assert_eq!(rows.len(), 2 + 22 + 3);
-    let impulse = |configured: &str| {
-        row(&rows, configured)["contact_impulse_n_s"]
-            .as_f64()
-            .unwrap()
-    };
+    let impulse = |configured: &str| number(&row(&rows, configured)["contact_impulse_n_s"]);
     assert!(impulse("force cap × 0.8") > impulse("right"));
     assert!(impulse("force cap × 1.25") < impulse("right"));
-    assert_eq!(rows, self::rows(&["--draws", "3", "--threads", "1"]));
-    let wide = self::rows(&["--draws", "0", "--width", "2"]);
+    assert_eq!(rows, self::rows("--draws 3 --threads 1"));
+    let wide = self::rows("--draws 0 --width 2");
     row(&wide, "mass × 1.56");
     row(&wide, "delay +2 ticks");
 }
@@ -137,7 +118,7 @@ fn the_command_tells_every_datum_wrong() {
 /// refused says so.
 #[test]
 fn what_the_scene_sets_itself_is_configured_wrong_too() {
-    let text = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let text = scene_text("overload_then_release");
     let assumed = |more: &str| {
         let scene = Scene::parse(
             "test",
@@ -170,21 +151,13 @@ fn what_the_scene_sets_itself_is_configured_wrong_too() {
 /// Without magnet or levitation controller there is nothing to supervise; a width has its bounds.
 #[test]
 fn what_cannot_be_configured_wrong_is_refused() {
-    for (args, expected) in [
-        (vec!["established_whirl_two_mass_stator"], "no [magnet]"),
-        (
-            vec!["overload_then_release", "--width", "5"],
-            "from 0.1 to 4",
-        ),
+    for (words, expected) in [
+        ("@established_whirl_two_mass_stator", "no [magnet]"),
+        ("@overload_then_release --width 5", "from 0.1 to 4"),
     ] {
-        let output = (host()
-            .arg("sensitivity")
-            .arg(scene_path(args[0]))
-            .args(&args[1..]))
-        .output()
-        .unwrap();
-        let shown = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{shown}");
-        assert!(shown.contains(expected), "{shown}");
+        let said = Folder::fresh()
+            .ran(&format!("sensitivity {words}"))
+            .fails(2);
+        has(&said, &[expected]);
     }
 }

@@ -5,91 +5,67 @@ use firmware_studies::campaign::Study;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
-use std::process::Output;
+use system_tests::ran::{Folder, Ran, has, lacks, list, number};
+use system_tests::root;
 use system_tests::terminal::assert_fits;
-use system_tests::{host, root};
 
-fn study(args: &[&str]) -> Output {
-    host().arg("study").args(args).output().unwrap()
-}
-
-fn utf8(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+fn study(words: &str) -> Ran {
+    Folder::fresh().ran(&format!("study {words}"))
 }
 
 #[test]
 fn the_list_names_every_study() {
-    let list = study(&["list", "--json"]);
-    let json: Value = serde_json::from_slice(&list.stdout).unwrap();
-    let names: Vec<&str> = (json["names"].as_array().unwrap().iter())
-        .map(|name| name.as_str().unwrap())
-        .collect();
-    assert_eq!(
-        names,
-        STUDIES.iter().map(|study| study.name).collect::<Vec<_>>()
-    );
-    let text = utf8(&study(&["list"]).stdout);
+    let json = study("list --json").json();
+    let names = list(&json["names"])
+        .iter()
+        .map(|name| name.as_str().unwrap());
+    assert!(names.eq(STUDIES.iter().map(|study| study.name)), "{json}");
+    let text = study("list").good();
     for known in STUDIES {
-        assert!(text.contains(known.about), "{}", known.name);
+        has(&text, &[known.about]);
     }
-    let unknown = study(&["weather"]);
-    assert_eq!(unknown.status.code(), Some(2));
-    assert!(utf8(&unknown.stderr).contains("unseen-machines"));
+    has(&study("weather").fails(2), &["unseen-machines"]);
 }
 
 /// Claims have the keys that programs know, and hold or not by their own numbers; a claim that does not hold is an error
 /// only where asked for, and results are printed all the same.
 #[test]
 fn claims_for_programs() {
-    let strict = study(&["unseen-machines", "--quick", "--strict", "--json"]);
-    assert_eq!(strict.status.code(), Some(1));
-    let json: Value = serde_json::from_slice(&strict.stdout).unwrap();
-    let claims = json["claims"].as_array().unwrap();
-    assert!(json["cases"].as_u64().unwrap() > 1000 && json["seconds"].as_f64().unwrap() > 0.0);
+    let strict = study("unseen-machines --quick --strict --json");
+    let json: Value = serde_json::from_str(&strict.printed).unwrap();
+    let said = strict.fails(1);
+    let claims = list(&json["claims"]);
+    assert!(json["cases"].as_u64().unwrap() > 1000 && number(&json["seconds"]) > 0.0);
     for claim in claims {
-        let keys: BTreeSet<&str> = claim
-            .as_object()
-            .unwrap()
-            .keys()
-            .map(String::as_str)
-            .collect();
-        assert_eq!(keys, ["bound", "holds", "measured", "name", "side"].into());
-        let (bound, measured) = (
-            &claim["bound"].as_f64().unwrap(),
-            &claim["measured"].as_f64().unwrap(),
+        let keys: BTreeSet<&String> = claim.as_object().unwrap().keys().collect();
+        assert!(
+            keys.iter()
+                .eq(&["bound", "holds", "measured", "name", "side"])
         );
+        let [bound, measured] = ["bound", "measured"].map(|key| number(&claim[key]));
         let holds = match claim["side"].as_str().unwrap() {
             "at_least" => measured >= bound,
             "at_most" => measured <= bound,
             other => panic!("{other}"),
         };
-        assert_eq!(claim["holds"].as_bool().unwrap(), holds, "{claim}");
+        assert_eq!(claim["holds"], holds, "{claim}");
     }
     nothing_is_lost_that_levitation_alone_recovers_from(claims);
     // Forces that come late are beyond what is promised.
-    let broken = claims
-        .iter()
-        .find(|claim| !claim["holds"].as_bool().unwrap())
-        .unwrap();
-    assert!(utf8(&strict.stderr).contains(broken["name"].as_str().unwrap()));
+    let broken = claims.iter().find(|claim| claim["holds"] == false).unwrap();
+    has(&said, &[broken["name"].as_str().unwrap()]);
 
-    let rows = study(&["rub", "--quick", "--machines", "1", "--json"]);
-    let json: Value = serde_json::from_slice(&rows.stdout).unwrap();
+    let json = study("rub --quick --machines 1 --json").json();
     assert!(json["rows"][0]["pairs"].is_u64(), "{json}");
 
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().to_str().unwrap();
-    let lenient = study(&["rub", "--quick", "--machines", "1", "--out", out]);
-    assert!(lenient.status.success());
-    assert!(folder.path().join("rub.html").is_file());
-    let text = utf8(&lenient.stdout);
+    let folder = Folder::fresh();
+    let text = folder.ran("study rub --quick --machines 1 --out .").good();
+    assert!(folder.at("rub.html").is_file());
     assert_fits(&text, 80);
     let (_, last) = text.trim_end().rsplit_once('\n').unwrap();
     let (kept, of) = last.split_once(" of ").unwrap();
-    assert!(
-        of.contains(" claims hold; ") && !of.starts_with(&format!("{kept} ")),
-        "{last}"
-    );
+    has(of, &[" claims hold; "]);
+    assert!(!of.starts_with(&format!("{kept} ")), "{last}");
 }
 
 /// On machines that nothing was tuned on: whatever levitation alone recovers from, the supervisor does, and from more, as long as
@@ -110,27 +86,24 @@ fn nothing_is_lost_that_levitation_alone_recovers_from(claims: &[Value]) {
 /// A study writes between its marks, and nothing else of the page changes.
 #[test]
 fn the_page_of_a_study() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("page.md");
+    let folder = Folder::fresh();
     let write = |study_name: &str| {
         let text = format!(
             "# Title\n\nBy hand.\n\n<!-- study {study_name}: by command -->\nof before\n<!-- end -->\n\nMore.\n"
         );
-        fs::write(&path, text).unwrap();
-        study(&["accuracy", "--quick", "--page", path.to_str().unwrap()])
+        folder.put("page.md", text);
+        folder.ran("study accuracy --quick --page page.md")
     };
-    let output = write("accuracy");
-    assert!(output.status.success(), "{output:?}");
-    let page = fs::read_to_string(&path).unwrap();
+    write("accuracy").good();
+    let page = folder.text("page.md");
     let marked = "# Title\n\nBy hand.\n\n<!-- study accuracy: by command -->\n\n## Claims\n";
     assert!(page.starts_with(marked), "{page}");
-    assert!(page.ends_with("\n<!-- end -->\n\nMore.\n") && !page.contains("of before"));
-    assert!(page.contains("| claim | bound | measured | holds |"));
+    assert!(page.ends_with("\n<!-- end -->\n\nMore.\n"), "{page}");
+    has(&page, &["| claim | bound | measured | holds |"]);
+    lacks(&page, &["of before"]);
 
-    let refused = write("harm");
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(utf8(&refused.stderr).contains("<!-- study accuracy: "));
-    assert!(fs::read_to_string(&path).unwrap().contains("of before"));
+    has(&write("harm").fails(2), &["<!-- study accuracy: "]);
+    has(&folder.text("page.md"), &["of before"]);
 }
 
 /// Every study has a page in the documentation, written by it, and the table of contents has that.

@@ -2,7 +2,7 @@
 
 use firmware_studies::validation::{Flight, Ran, Record, Rig, Touch};
 use plant_model::V2;
-use system_tests::host;
+use system_tests::ran::{Folder, has};
 
 const SAMPLES: usize = 700;
 const FLIGHT: Flight = Flight {
@@ -102,30 +102,15 @@ fn friction_shows_in_the_impulse() {
 
 #[test]
 fn without_a_record_it_says_what_it_needs() {
-    let study = |args: &[&str]| host().arg("study").args(args).output().unwrap();
-    let folder = tempfile::tempdir().unwrap();
-    let short = folder.path().join("short.csv");
-    std::fs::write(
-        &short,
-        "time_s,exciter_force_x_n,disc_x_m,disc_y_m\n0,0,0,0\n1e-4,0,0,0\n",
-    )
-    .unwrap();
-    for (args, shown) in [
-        (&["validation"][..], "--record FILE.csv"),
-        (&["validation", "--record", "none.csv"], "none.csv: "),
-        (
-            &["validation", "--record", short.to_str().unwrap()],
-            "ends before 0.143 s",
-        ),
-        (
-            &["harm", "--record", "none.csv"],
-            "--record is of validation",
-        ),
+    let folder = Folder::fresh();
+    let short = "time_s,exciter_force_x_n,disc_x_m,disc_y_m\n0,0,0,0\n1e-4,0,0,0\n";
+    folder.put("short.csv", short);
+    for (words, said) in [
+        ("validation", "--record FILE.csv"),
+        ("validation --record none.csv", "none.csv: "),
+        ("validation --record short.csv", "ends before 0.143 s"),
+        ("harm --record none.csv", "--record is of validation"),
     ] {
-        let ended = study(args);
-        assert_eq!(ended.status.code(), Some(2), "{args:?}");
-        let text = String::from_utf8_lossy(&ended.stderr).replace('\n', " ");
-        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(text.contains(shown), "{text}");
+        has(&folder.ran(&format!("study {words}")).fails(2), &[said]);
     }
 }

@@ -72,7 +72,7 @@ fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
     for (plant, eccentricity_m, force_ratio) in [("P1 150 N", 3e-4, 0.4), ("P2", 2e-4, 0.97)] {
         let scene = unbalanced(plant, eccentricity_m);
         let found = stored(plant, RATE_HZ).unwrap();
-        let (supervisor, tape) = recording(&scene.planes[0].supervisor.unwrap()).unwrap();
+        let (supervisor, log) = recording(&scene.planes[0].supervisor.unwrap()).unwrap();
         let mut with_levitation = scene.clone();
         with_levitation.planes[0].levitation = Some(found.tuned);
         let supervised = supervised(&with_levitation, supervisor).unwrap();

@@ -107,7 +107,7 @@ fn nothing_is_torn_where_both_run_at_once() {
         if asked.is_empty() {
             continue;
         }
-        let mut skipped = told
+        let mut skipped = ticked
             .by_ref()
             .skip_while(|(i, _)| lost && *i != event.sequence);
         let (sequence, command) = skipped.next().unwrap();

@@ -1,17 +1,14 @@
 //! The command line: what goes in, what comes out as JSON, what is refused.
 
-use super::{AMB, advise, stderr};
+use super::{AMB, advise};
 use crate::refusals::{all, command_line};
 use serde_json::Value;
 use supervisor::PARAMETERS;
-use system_tests::scene_path;
+use system_tests::ran::list;
 
 #[test]
 fn json_has_its_keys_and_agrees_with_the_scene() {
-    let numbers: Vec<&str> = AMB.iter().copied().chain(["--json"]).collect();
-    let output = advise(&numbers);
-    assert!(output.status.success(), "{}", stderr(&output));
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let json = advise(&format!("{AMB} --json")).json();
     for pointer in [
         "/nominal/mass_kg",
         "/limits/lift_off_m_s",
@@ -40,26 +37,15 @@ fn json_has_its_keys_and_agrees_with_the_scene() {
         assert!(value.is_some_and(Value::is_number), "{pointer}: {value:?}");
     }
     assert!(json["limits"]["passive_threshold_m_s"].is_null());
-    assert_eq!(
-        json["parameters"].as_array().unwrap().len(),
-        PARAMETERS.len()
-    );
+    assert_eq!(list(&json["parameters"]).len(), PARAMETERS.len());
     assert_eq!(json["warnings"][0]["key"], "lag_drives");
     assert!(json["warnings"][0]["remedy"].is_string());
-    assert!(
-        json["supervisor_table"]
-            .as_str()
-            .unwrap()
-            .starts_with("[supervisor]")
-    );
+    let table = json["supervisor_table"].as_str().unwrap();
+    assert!(table.starts_with("[supervisor]"));
 
     // The overload scene is the same bearing but for the converter's step and the spin.
-    let mut more = numbers.clone();
-    more.extend(["--quantum-m=1e-7", "--spin-hz=200"]);
-    let numbers: Value = serde_json::from_slice(&advise(&more).stdout).unwrap();
-    let path = scene_path("overload_then_release");
-    let output = advise(&[path.to_str().unwrap(), "--json"]);
-    let scene: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let numbers = advise(&format!("{AMB} --json --quantum-m=1e-7 --spin-hz=200")).json();
+    let scene = advise("@overload_then_release --json").json();
     for key in [
         "nominal",
         "limits",
@@ -76,6 +62,10 @@ fn json_has_its_keys_and_agrees_with_the_scene() {
 
 #[test]
 fn bad_numbers_end_with_code_2_and_say_what_is_wrong() {
-    let line = format!("advise {}", AMB.join(" "));
-    all("command_lines/advise", 21, &line, command_line);
+    all(
+        "command_lines/advise",
+        21,
+        &format!("advise {AMB}"),
+        command_line,
+    );
 }

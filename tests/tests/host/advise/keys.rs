@@ -1,9 +1,10 @@
 //! The pages that say what the JSON has.
 
-use super::{AMB, advise};
+use super::AMB;
 use serde_json::Value;
 use std::collections::BTreeSet;
-use system_tests::{root, scene_path};
+use system_tests::ran::{Folder, scene_text};
+use system_tests::root;
 
 /// Every key of an object, at any depth.
 fn keys(json: &Value, found: &mut BTreeSet<String>) {
@@ -25,26 +26,17 @@ fn the_page_has_every_key() {
     let page = std::fs::read_to_string(root().join("docs/src/supervisor/advise.md")).unwrap();
     let (_, listed) = page.split_once("\n## JSON\n").unwrap();
     let listed = listed.split("\n## ").next().unwrap();
-    let folder = tempfile::TempDir::new().unwrap();
-    let own = std::fs::read_to_string(scene_path("impact_at_40_hz")).unwrap();
-    let path = folder.path().join("own.toml");
-    std::fs::write(&path, own + "\n[supervisor]\nhold_share = 0.7\n").unwrap();
+    let folder = Folder::fresh();
+    let own = scene_text("impact_at_40_hz") + "\n[supervisor]\nhold_share = 0.7\n";
+    folder.put("own.toml", own);
     let mut found = BTreeSet::new();
-    for args in [
-        &[&AMB[..], &["--json"]].concat()[..],
-        &[path.to_str().unwrap(), "--json"],
-    ] {
-        let json = serde_json::from_slice(&advise(args).stdout).unwrap();
+    for of in [AMB, "own.toml"] {
+        let json = folder.ran(&format!("advise {of} --json")).json();
         keys(&json, &mut found);
     }
     assert!(found.len() > 60, "{found:?}");
     for key in found {
-        assert!(
-            ["", "[]"]
-                .map(|s| format!("`{key}{s}`"))
-                .iter()
-                .any(|k| listed.contains(k)),
-            "{key}"
-        );
+        let names = ["", "[]"].map(|s| format!("`{key}{s}`"));
+        assert!(names.iter().any(|name| listed.contains(name)), "{key}");
     }
 }

@@ -1,9 +1,10 @@
 //! The suggested configuration as it is written in firmware.
 
-use super::{AMB, advise, amb, stderr};
+use super::{AMB, advise, amb};
 use firmware_bench::scene::suggest::suggested;
 use supervisor::{Bearing, Config, PARAMETERS};
-use system_tests::{root, scene_path};
+use system_tests::ran::{Folder, edited, flat, has, lacks, scene_text};
+use system_tests::root;
 
 /// The fields of a `Config` as Rust writes it.
 fn fields(source: &str) -> Vec<(String, f32)> {
@@ -50,140 +51,105 @@ fn first_configuration(source: &str) -> Config {
     Config::from_values(values)
 }
 
+/// Fields of a configuration, by name.
+fn named(config: &Config) -> Vec<(String, f32)> {
+    let values = PARAMETERS.iter().zip(config.values());
+    values
+        .map(|(p, value)| (p.name.to_owned(), value))
+        .collect()
+}
+
 /// What Rust takes is what the table for a scene says, and what the book shows is the example of the crate, and that is what is advised: but
 /// for the drive's own limits, and how it is cooled.
 #[test]
 fn a_listing_for_rust_is_the_suggested_configuration() {
-    let advised = |more: &[&str]| {
-        let output = advise(&[&AMB[..], more].concat());
-        assert!(output.status.success(), "{}", stderr(&output));
-        String::from_utf8(output.stdout).unwrap()
-    };
-    let listing = advised(&["--format", "rust"]);
+    let advised = |more: &str| advise(&format!("{AMB} {more}")).good();
     let config = suggested(&amb()).config;
     // A machine has to confirm what a simulated one is made of.
     let of_firmware = Config {
         check_first: 1.0,
         ..config
     };
-    let named = |config: &Config| -> Vec<(String, f32)> {
-        let values = PARAMETERS.iter().zip(config.values());
-        values
-            .map(|(p, value)| (p.name.to_owned(), value))
-            .collect()
-    };
-    let values = named(&config);
-    assert_eq!(fields(&listing), named(&of_firmware));
-    let table = advised(&["--format", "toml"]);
+    assert_eq!(fields(&advised("--format rust")), named(&of_firmware));
+    let table = advised("--format toml");
     // For a person the same, with long comments broken: still a table of a scene.
     let words = |text: &str| -> Vec<String> {
         let words = text.split_whitespace().filter(|word| *word != "#");
         words.map(str::to_owned).collect()
     };
-    let page = advised(&[]);
+    let page = advised("");
     let (_, shown) = page.split_once("[supervisor]\n").unwrap();
     assert_eq!(words(&format!("[supervisor]\n{shown}")), words(&table));
     let parsed = |text: &str| text.parse::<toml::Table>().unwrap();
-    assert_eq!(
-        parsed(shown),
-        parsed(&table)["supervisor"].as_table().unwrap().clone()
-    );
+    let of_table = parsed(&table)["supervisor"].as_table().unwrap().clone();
+    assert_eq!(parsed(shown), of_table);
 
     let own = ["force_slew_n_s", "continuous_force_n", "thermal_time_s"];
-    for (shown, (name, value)) in Config::example().values().iter().zip(&values) {
-        assert!(
-            shown == value || own.contains(&name.as_str()),
-            "{name} = {value}"
-        );
+    for (shown, (name, value)) in Config::example().values().iter().zip(named(&config)) {
+        let same = *shown == value || own.contains(&name.as_str());
+        assert!(same, "{name} = {value}");
     }
     let page = std::fs::read_to_string(root().join("docs/src/supervisor/parameters.md")).unwrap();
-    let of_page = first_configuration(&page);
-    assert_eq!(
-        Config {
-            check_first: 0.0,
-            ..of_page
-        },
-        Config::example()
-    );
+    let of_page = Config {
+        check_first: 0.0,
+        ..first_configuration(&page)
+    };
+    assert_eq!(of_page, Config::example());
 }
 
 /// Nine numbers and what does not follow from them are the whole configuration, and nothing that follows is repeated.
 #[test]
 fn a_short_listing_makes_the_same_configuration() {
-    let folder = tempfile::TempDir::new().unwrap();
-    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let path = folder.path().join("own.toml");
-    std::fs::write(
-        &path,
-        own + "\n[supervisor]\nhold_share = 0.625\nmass_kg = 9.0\n",
-    )
-    .unwrap();
-    let plant = root().join("firmware-host/scenes/plants/p4.toml");
-    let plant = plant.to_str().unwrap();
-    let noisy = [&AMB[..9], &["--noise-rms-m=2e-7", "--quantum-m=3e-6"]].concat();
-    for args in [&AMB[..], &noisy, &[plant], &[path.to_str().unwrap()]] {
-        let printed = |more: &[&str]| {
-            let output = advise(&[args, &["--format", "rust"], more].concat());
-            assert!(output.status.success(), "{}", stderr(&output));
-            String::from_utf8(output.stdout).unwrap()
+    let folder = Folder::fresh();
+    let own = "\n[supervisor]\nhold_share = 0.625\nmass_kg = 9.0\n";
+    folder.put("own.toml", scene_text("overload_then_release") + own);
+    let noise = [("--noise-rms-m=1e-6", "--noise-rms-m=2e-7 --quantum-m=3e-6")];
+    for of in [AMB, &edited(AMB, &noise), "@plants/p4", "own.toml"] {
+        let said = |more: &str| {
+            folder
+                .ran(&format!("advise {of} --format rust {more}"))
+                .good()
         };
-        let (all, short) = (printed(&[]), printed(&["--short"]));
+        let (all, short) = (said(""), said("--short"));
         assert!(all.is_ascii() && short.is_ascii(), "{all}\n{short}");
-        let made = first_configuration(&short);
-        let made: Vec<(String, f32)> = (PARAMETERS.iter().zip(made.values()))
-            .map(|(p, value)| (p.name.to_owned(), value))
-            .collect();
-        assert_eq!(fields(&all), made);
+        assert_eq!(fields(&all), named(&first_configuration(&short)));
     }
 }
 
 /// What a scene sets itself is in the listing, also where it does not run the supervisor, and warnings go beside it.
 #[test]
 fn a_listing_has_what_the_scene_sets() {
-    let folder = tempfile::TempDir::new().unwrap();
-    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let path = folder.path().join("own.toml");
+    let folder = Folder::fresh();
     let all = "policies = [\"passive\", \"radial\", \"levitation\", \"supervisor\"]";
-    assert!(own.contains(all));
-    let own = own.replace(all, "policies = [\"passive\"]") + "\n[supervisor]\nhold_share = 0.625\n";
-    std::fs::write(&path, own).unwrap();
+    let passive = [(all, "policies = [\"passive\"]")];
+    let own = edited(&scene_text("overload_then_release"), &passive);
+    folder.put("own.toml", own + "\n[supervisor]\nhold_share = 0.625\n");
     for (language, line) in [
         ("toml", "hold_share = 0.625 "),
         ("rust", "hold_share: 0.625, "),
         ("c", "0.625f,           /* AMB_P_HOLD_SHARE: "),
     ] {
-        let output = advise(&[path.to_str().unwrap(), "--format", language]);
-        let printed = stderr(&output);
-        let text = String::from_utf8(output.stdout).unwrap();
-        assert!(
-            text.contains(line) && text.contains("suggested 0.8"),
-            "{text}"
-        );
-        assert!(
-            !text.contains("lag_drives") && printed.contains("warning: lag_drives"),
-            "{printed}"
-        );
+        let ran = folder.ran(&format!("advise own.toml --format {language}"));
+        has(&ran.printed, &[line, "suggested 0.8"]);
+        lacks(&ran.printed, &["lag_drives"]);
+        has(&flat(&ran.said), &["warning: lag_drives"]);
     }
 }
 
 /// The stiffness of a contact that hardens is derived from its law, and nobody reads that it was given.
 #[test]
 fn the_tangent_of_a_hardening_contact_is_said_to_be_one() {
-    let folder = tempfile::TempDir::new().unwrap();
-    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let folder = Folder::fresh();
     let law = "stiffness_n_mn = 1e13\nrestitution_speed_m_s = 0.3";
-    let path = folder.path().join("hardening.toml");
-    std::fs::write(&path, own.replacen("stiffness_n_m = 1e9", law, 1)).unwrap();
-    for more in [&[][..], &["--format", "rust"], &["--format", "c"]] {
-        let output = advise(&[&[path.to_str().unwrap()], more].concat());
-        let text = String::from_utf8(output.stdout).unwrap().to_lowercase();
-        let mut lines = text
-            .lines()
-            .filter(|l| l.trim().contains("contact_stiffness_n_m"));
-        let line = lines.next().unwrap_or_else(|| panic!("{text}"));
-        assert!(
-            line.contains("tangent at a depth of one clearance"),
-            "{line}"
+    let hardening = [("stiffness_n_m = 1e9", law)];
+    folder.scene("hardening.toml", "overload_then_release", &hardening);
+    for more in ["", "--format rust", "--format c"] {
+        let ran = folder.ran(&format!("advise hardening.toml {more}"));
+        let text = ran.printed.to_lowercase();
+        let line = text.lines().find(|l| l.contains("contact_stiffness_n_m"));
+        has(
+            line.unwrap_or(&text),
+            &["tangent at a depth of one clearance"],
         );
     }
 }

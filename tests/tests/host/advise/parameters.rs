@@ -1,11 +1,12 @@
 //! Tables of parameters: the one that is printed to be pasted into a scene, and those of the book.
 
-use super::{advice, advise, amb, stderr};
+use super::{advice, advise, amb};
 use firmware_bench::advise::Advice;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::suggest::{Nominal, suggested};
 use supervisor::{DefaultRule, PARAMETERS};
-use system_tests::{parameters, root, scene_names, scene_path};
+use system_tests::ran::{has, scene_text};
+use system_tests::{parameters, root, scene, scene_names};
 
 /// Every scene with a supervisor: with the printed table in it its configuration is the suggested one,
 /// and without one, too.
@@ -13,17 +14,14 @@ use system_tests::{parameters, root, scene_names, scene_path};
 fn the_pasted_table_gives_the_same_configuration() {
     let mut pasted = 0;
     for name in scene_names() {
-        let path = scene_path(&name);
-        let scene = Scene::load(&path).unwrap();
+        let scene = scene(&name);
         let plane = &scene.planes[0];
         if plane.supervisor.is_none() {
             continue;
         }
-        let output = advise(&[path.to_str().unwrap()]);
-        assert!(output.status.success(), "{}", stderr(&output));
-        let text = String::from_utf8(output.stdout).unwrap();
+        let text = advise(&format!("@{name}")).good();
         let table = &text[text.find("[supervisor]").unwrap()..];
-        let own = std::fs::read_to_string(&path).unwrap();
+        let own = scene_text(&name);
         // What a scene sets itself makes way for the table.
         let (before, rest) = own.split_once("[supervisor]").unwrap_or((&own, ""));
         let after = rest.find("\n[").map_or("", |at| &rest[at..]);
@@ -52,16 +50,15 @@ fn the_table_holds_every_bit() {
     };
     let a = advice(&n);
     let config = suggested(&n).config;
-    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let own = scene_text("overload_then_release");
     let scene = Scene::parse("scene", &format!("{own}\n{}", a.supervisor_table)).unwrap();
     let plane = &scene.planes[0];
     assert_eq!(plane.supervisor.unwrap(), config);
     // Against a scene of its own the table says what that replaces.
     let with_own = Advice::new("test", &plane.nominal, &plane.overrides).unwrap();
-    assert!(
-        with_own
-            .supervisor_table
-            .contains("(this scene sets 0.33333334)")
+    has(
+        &with_own.supervisor_table,
+        &["(this scene sets 0.33333334)"],
     );
     for (p, value) in PARAMETERS.iter().zip(config.values()) {
         let row = a.parameters.iter().find(|r| r.name == p.name).unwrap();

@@ -1,16 +1,15 @@
 //! Advice for a supervisor of both planes: nutation, and bending modes under its force.
 
+use super::advise;
 use firmware_bench::advise::{Advice, RotorAdvice};
 use firmware_bench::scene::Scene;
-use serde_json::Value;
 use supervisor::Config;
-use system_tests::{host, root};
+use system_tests::ran::{edited, has, lacks, list, number, scene_text};
+use system_tests::scene;
 
 /// Of a plant of the catalogue, with the displacement at both magnets times a factor.
 fn of(plant: &str, at_magnets: f64) -> RotorAdvice {
-    let path = root().join(format!("firmware-host/scenes/rotors/{plant}.toml"));
-    let text = std::fs::read_to_string(path).unwrap();
-    let mut scene = Scene::parse(plant, &text).unwrap();
+    let mut scene = scene(&format!("rotors/{plant}"));
     let magnets: Vec<f64> = scene.machine.magnets.iter().map(|m| m.position_m).collect();
     if let plant_model::machine::params::Rotor::Modal { bending, .. } = &mut scene.machine.rotor {
         for (z, displacement) in bending.iter_mut().flat_map(|mode| &mut mode.shape) {
@@ -19,8 +18,7 @@ fn of(plant: &str, at_magnets: f64) -> RotorAdvice {
             }
         }
     }
-    let configs: Vec<_> = scene.planes.iter().map(|p| p.supervisor.unwrap()).collect();
-    RotorAdvice::new(&scene, &configs).unwrap()
+    RotorAdvice::new(&scene, &configs(&scene)).unwrap()
 }
 
 #[test]
@@ -55,18 +53,13 @@ fn bends(displacements: [f64; 7], hz: f64, set: &str) -> Scene {
     let mode = format!(
         "[[rotor.bending]]\nfrequency_hz = {hz}\ndamping_ratio = 0.003\npositions_m = [-0.25, -0.23, -0.2, 0.0, 0.2, 0.23, 0.25]\ndisplacements = {displacements:?}\n\n[spin]"
     );
-    let text = std::fs::read_to_string(root().join("firmware-host/scenes/rotors/p5.toml")).unwrap();
-    let text = (text.replacen("[spin]", &mode, 1))
-        .replacen(
-            "position_m = -0.2\n",
-            "position_m = -0.2\nsensor = { position_m = -0.23 }\n",
-            1,
-        )
-        .replacen(
-            "position_m = 0.2\n",
-            "position_m = 0.2\nsensor = { position_m = 0.23 }\n",
-            1,
-        );
+    let at = |z: &str| format!("position_m = {z}\nsensor = {{ position_m = {z}3 }}\n");
+    let edits = [
+        ("[spin]", &mode[..]),
+        ("position_m = -0.2\n", &at("-0.2")),
+        ("position_m = 0.2\n", &at("0.2")),
+    ];
+    let text = edited(&scene_text("rotors/p5"), &edits);
     Scene::parse("bends", &format!("{text}\n[supervisor]\n{set}")).unwrap()
 }
 
@@ -86,36 +79,27 @@ fn a_damped_mode_changes_nothing() {
     assert_eq!((config.bending_first_hz, config.acts_in_flight), (0.0, 1.0));
     assert!(scene.planes.iter().all(|plane| plane.decided.is_empty()));
     assert_eq!(scene.role(&configs(&scene)).name, "full");
-    assert!(
-        !scene.warnings.iter().any(|w| w.contains("flight")),
-        "{:?}",
-        scene.warnings
-    );
+    lacks(&scene.warnings.join("\n"), &["flight"]);
 }
 
 /// A mode that the force would drive is configured where that suffices, unless the scene says otherwise.
 #[test]
 fn a_mode_is_configured_where_that_suffices() {
-    let scene = bends(ALIKE, 1500.0, "");
-    let both = configs(&scene);
-    assert_eq!(both.map(|c| c.bending_first_hz), [1500.0; 2]);
-    assert_eq!(both.map(|c| c.acts_in_flight), [1.0; 2]);
-    let role = scene.role(&both);
-    assert!(
-        role.name == "full" && role.reason.contains("1500.0 Hz configured"),
-        "{role:?}"
-    );
-
-    let by_hand = bends(ALIKE, 1500.0, "bending_first_hz = 0\nacts_in_flight = 1\n");
-    let both = configs(&by_hand);
-    assert_eq!(both.map(|c| c.bending_first_hz), [0.0; 2]);
-    assert_eq!(both.map(|c| c.acts_in_flight), [1.0; 2]);
-    let warned = |w: &String| w.contains("1500.0 Hz") && w.contains('%');
-    assert!(
-        by_hand.warnings.iter().any(warned),
-        "{:?}",
-        by_hand.warnings
-    );
+    for (set, told_hz) in [
+        ("", 1500.0),
+        ("bending_first_hz = 0\nacts_in_flight = 1\n", 0.0),
+    ] {
+        let scene = bends(ALIKE, 1500.0, set);
+        let both = configs(&scene);
+        assert_eq!(both.map(|c| c.bending_first_hz), [told_hz; 2]);
+        assert_eq!(both.map(|c| c.acts_in_flight), [1.0; 2]);
+        let role = scene.role(&both);
+        match told_hz > 0.0 {
+            true => assert_eq!(role.name, "full", "{role:?}"),
+            false => has(&scene.warnings.join("\n"), &["1500.0 Hz", "%"]),
+        }
+        assert!(told_hz == 0.0 || role.reason.contains("1500.0 Hz configured"));
+    }
 }
 
 /// Where it does not, levitation keeps the rotor in the air; whoever sets it overrules that.
@@ -128,85 +112,49 @@ fn a_mode_that_is_driven_all_the_same_leaves_flight_to_levitation() {
     assert_eq!(both.map(|c| c.acts_in_flight), [0.0; 2]);
     let by_hand = configs(&bends(NODE_BETWEEN, 200.0, "acts_in_flight = 1\n"));
     assert_eq!(by_hand.map(|c| c.acts_in_flight), [1.0; 2]);
-    assert!(
-        scene
-            .warnings
-            .iter()
-            .any(|w| w.contains("backward whirl only"))
-    );
-    assert!(role.reason.contains("200.0 Hz"), "{role:?}");
+    has(&scene.warnings.join("\n"), &["backward whirl only"]);
+    has(&role.reason, &["200.0 Hz"]);
     let advice = RotorAdvice::new(&scene, &both).unwrap();
-    assert!(advice.text().contains("whirl only"), "{}", advice.text());
+    has(&advice.text(), &["whirl only"]);
     assert!(advice.bending_over_clearance.unwrap() > 0.0);
     let plane = &scene.planes[0];
     let of_plane = Advice::of_plane("end", &plane.nominal, &plane.decided, &plane.overrides);
-    let table = of_plane.unwrap().supervisor_table;
-    assert!(table.contains("acts_in_flight = 0 "), "{table}");
+    has(
+        &of_plane.unwrap().supervisor_table,
+        &["acts_in_flight = 0 "],
+    );
 }
 
 /// Of a mode that the force would drive it is advised to tell it where that helps; told, it is not driven any more.
 #[test]
 fn a_mode_is_told_where_that_helps() {
     let bends = "[[rotor.bending]]\nfrequency_hz = 1200.0\ndamping_ratio = 0.003\npositions_m = [-0.25, 0.0, 0.25]\ndisplacements = [0.6, -0.4, 0.6]\n\n[spin]";
-    let path = root().join("firmware-host/scenes/rotors/p5.toml");
-    let text = std::fs::read_to_string(path).unwrap();
-    let text = text.replacen("[spin]", bends, 1);
-    let advised = |text: &str| {
-        let scene = Scene::parse("bends", text).unwrap();
-        let configs: Vec<_> = (scene.planes.iter())
-            .map(|p| p.supervisor.unwrap())
-            .collect();
-        RotorAdvice::new(&scene, &configs).unwrap()
+    let text = edited(&scene_text("rotors/p5"), &[("[spin]", bends)]);
+    let advised = |set: &str| {
+        let scene = Scene::parse("bends", &format!("{text}\n[supervisor]\n{set}")).unwrap();
+        RotorAdvice::new(&scene, &configs(&scene)).unwrap()
     };
-    let before = advised(&format!(
-        "{text}\n[supervisor]\nbending_first_hz = 0\nacts_in_flight = 1\n"
-    ));
+    let before = advised("bending_first_hz = 0\nacts_in_flight = 1\n");
     let promised = before.modes[0].told_damping_ratio.unwrap();
     assert!(before.modes[0].grows() && promised > before.modes[0].added_damping_ratio);
-    assert!(
-        before.text().contains("bending_first_hz = 1200"),
-        "{}",
-        before.text()
-    );
-    let after = advised(&format!("{text}\n[supervisor]\nbending_first_hz = 1200\n"));
+    has(&before.text(), &["bending_first_hz = 1200"]);
+    let after = advised("bending_first_hz = 1200\n");
     assert!((after.modes[0].added_damping_ratio / promised - 1.0).abs() < 1e-6);
-    assert!(
-        !after.modes[0].grows() && !after.text().contains("do:"),
-        "{}",
-        after.text()
-    );
+    assert!(!after.modes[0].grows());
+    lacks(&after.text(), &["do:"]);
 }
 
 #[test]
 fn it_is_printed_and_has_keys() {
-    let scene = "firmware-host/scenes/rotors/p7.toml";
-    let run = |more: &[&str]| {
-        let output = host()
-            .args(["advise", scene])
-            .args(more)
-            .current_dir(root())
-            .output()
-            .unwrap();
-        assert!(output.status.success());
-        String::from_utf8(output.stdout).unwrap()
-    };
-    let text = run(&[]);
-    assert!(
-        text.contains("Nutation") && text.contains("Bending modes"),
-        "{text}"
-    );
-    let json: Value = serde_json::from_str(&run(&["--json"])).unwrap();
+    let text = advise("@rotors/p7").good();
+    has(&text, &["Nutation", "Bending modes"]);
+    let json = advise("@rotors/p7 --json").json();
     let rotor = &json["rotor"];
-    assert!((rotor["nutation_hz"].as_f64().unwrap() - 10.0).abs() < 0.01);
-    assert!(rotor["modes"][0]["added_damping_ratio"].as_f64().unwrap() > 0.0);
-    assert!(
-        rotor["modes"][0]["damping_by_force_percent"]
-            .as_f64()
-            .unwrap()
-            > 0.0
-    );
-    assert!(rotor["bending_over_clearance"].as_f64().unwrap() > 0.0);
+    assert!((number(&rotor["nutation_hz"]) - 10.0).abs() < 0.01);
+    assert!(number(&rotor["modes"][0]["added_damping_ratio"]) > 0.0);
+    assert!(number(&rotor["modes"][0]["damping_by_force_percent"]) > 0.0);
+    assert!(number(&rotor["bending_over_clearance"]) > 0.0);
     assert_eq!(rotor["role"]["name"], "full");
-    assert!(!rotor["role"]["reason"].as_str().unwrap().is_empty());
-    assert_eq!(rotor["modes"][1]["at_sensors"].as_array().unwrap().len(), 2);
+    assert_ne!(rotor["role"]["reason"].as_str().unwrap(), "");
+    assert_eq!(list(&rotor["modes"][1]["at_sensors"]).len(), 2);
 }

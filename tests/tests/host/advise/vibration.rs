@@ -4,13 +4,12 @@ use super::shaken::{
     Path, Shake, after_a_touch, after_an_approach, engaged_for_long, on_the_wall, round_the_wall,
     shaken,
 };
-use super::{AMB, advice, advise, amb, stderr};
+use super::{AMB, advice, advise, amb};
 use firmware_bench::advise::RUNOUT_SPEED_SHARE;
 use firmware_bench::scene::suggest::{Nominal, suggested};
-use serde_json::Value;
 use std::f64::consts::TAU;
 use supervisor::{Core, CoreSample, Mode, Prepared, Status};
-use system_tests::scene_path;
+use system_tests::ran::{has, lacks, list, number};
 
 /// Whatever the mode, the size and the frequency: a force within the cap does at most 4·F·A of work in a cycle on a
 /// vibration of amplitude A, F for each metre of its path. In flight it damps well below the crossover at any size, and drives
@@ -87,7 +86,7 @@ fn at_spin(spin_hz: f64) -> Nominal {
 
 /// In which mode the core, after 0.2 s of a runout of this amplitude \[clearances\], takes over from a rotor that is led onto
 /// the wall, if it does; and that it has not done so before.
-fn takes_over(n: &Nominal, amplitude: f64, valid: bool) -> Option<Mode> {
+fn takes_over(n: &Nominal, amplitude: f64, told: bool) -> Option<Mode> {
     let config = suggested(n).config;
     let unit_s = f64::from(config.scaling().time_s);
     let spin = TAU * n.spin_hz.unwrap();
@@ -98,7 +97,7 @@ fn takes_over(n: &Nominal, amplitude: f64, valid: bool) -> Option<Mode> {
         let way = grown * amplitude * (spin * at_s).sin();
         // A coordinate that stands still is a stuck sensor.
         let dither = if i.is_multiple_of(2) { 1e-9 } else { -1e-9 };
-        let known = if valid {
+        let known = if told {
             Status::SPIN_VALID
         } else {
             Status::empty()
@@ -116,7 +115,7 @@ fn takes_over(n: &Nominal, amplitude: f64, valid: bool) -> Option<Mode> {
     };
     let rest = (0.2 * n.sample_rate_hz) as u32;
     for i in 0..rest {
-        assert_eq!(tick(i, 0.0), Mode::Levitated, "{amplitude}, {valid}, {n:?}");
+        assert_eq!(tick(i, 0.0), Mode::Levitated, "{amplitude}, {told}, {n:?}");
     }
     let out = (2.0 * unit_s * n.sample_rate_hz) as u32;
     let mut led = (1..=2 * out).map(|i| tick(rest + i, (f64::from(i) / f64::from(out)).min(1.03)));
@@ -136,10 +135,10 @@ fn a_runout_below_the_limit_leaves_the_help() {
                     ..at_spin(spin_hz)
                 };
                 let limit = advice(&n).vibration.runout_limit_m.unwrap() / n.clearance_m;
-                for valid in [false, true] {
-                    let mode = takes_over(&n, 0.7 * limit, valid);
+                for told in [false, true] {
+                    let mode = takes_over(&n, 0.7 * limit, told);
                     let early = matches!(mode, Some(Mode::Approach | Mode::Bounce));
-                    assert!(early, "{mode:?}, {valid}, {n:?}");
+                    assert!(early, "{mode:?}, {told}, {n:?}");
                 }
                 if spin_hz < 400.0 {
                     let mode = takes_over(&n, 1.3 * limit, false);
@@ -169,7 +168,7 @@ fn the_runout_limit_is_that_of_the_speed() {
 /// On the right side of the limit, with what to do.
 #[test]
 fn a_runout_beyond_the_limit_is_told() {
-    let warn = |n: Nominal, runout_m: Option<f64>| {
+    let told = |n: Nominal, runout_m: Option<f64>| {
         let warnings = advice(&Nominal { runout_m, ..n }).warnings;
         warnings.into_iter().find(|w| w.key == "runout")
     };
@@ -183,63 +182,39 @@ fn a_runout_beyond_the_limit_is_told() {
         (at_spin(10.0), Some(2.1e-4), true),
         (amb(), Some(1e-3), false),
     ] {
-        assert_eq!(warn(n, runout_m).is_some(), expected, "{runout_m:?}, {n:?}");
+        assert_eq!(told(n, runout_m).is_some(), expected, "{runout_m:?}, {n:?}");
     }
-    let warning = warn(at_spin(200.0), Some(8e-5)).unwrap();
-    assert!(
-        warning.text.contains("80.0 µm at 200.0 Hz"),
-        "{}",
-        warning.text
-    );
-    assert!(warning.remedy.contains("subtract"), "{}", warning.remedy);
+    let warning = told(at_spin(200.0), Some(8e-5)).unwrap();
+    has(&warning.text, &["80.0 µm at 200.0 Hz"]);
+    has(&warning.remedy, &["subtract"]);
 }
 
 #[test]
 fn text_and_json_say_where_damping_ends() {
-    let with = |more: &[&str]| advise(&[&AMB[..], more].concat());
-    let json = |more: &[&str]| -> Value {
-        let output = with(&[more, &["--json"]].concat());
-        assert!(output.status.success(), "{}", stderr(&output));
-        serde_json::from_slice(&output.stdout).unwrap()
-    };
-    let plain = json(&[]);
-    let hz = plain["crossover_hz"].as_f64().unwrap();
+    let with = |more: &str| advise(&format!("{AMB} {more}"));
+    let plain = with("--json").json();
+    let hz = number(&plain["crossover_hz"]);
     assert!((hz - 817.0).abs() < 1.0, "{hz}");
-    assert!(plain["driving_hz"].as_f64().unwrap() > hz);
-    assert!(plain["driving_n_s_m"].as_f64().unwrap() > 9e3);
+    assert!(number(&plain["driving_hz"]) > hz);
+    assert!(number(&plain["driving_n_s_m"]) > 9e3);
     assert!(plain["runout_limit_m"].is_null() && plain["nominal"]["spin_hz"].is_null());
-    let turning = json(&["--spin-hz=-200", "--runout-m=9e-5"]);
-    let limit_m = turning["runout_limit_m"].as_f64().unwrap();
+    let turning = with("--spin-hz=-200 --runout-m=9e-5 --json").json();
+    let limit_m = number(&turning["runout_limit_m"]);
     assert!((limit_m - 4.502e-5).abs() < 1e-8, "{limit_m}");
     assert_eq!(turning["nominal"]["runout_m"], 9e-5);
-    let keys: Vec<&Value> = (turning["warnings"].as_array().unwrap().iter())
-        .map(|w| &w["key"])
-        .collect();
-    assert!(keys.contains(&&Value::from("runout")), "{keys:?}");
+    let mut warnings = list(&turning["warnings"]).iter();
+    assert!(warnings.any(|w| w["key"] == "runout"), "{turning}");
 
-    let text = String::from_utf8(with(&["--spin-hz=200"]).stdout).unwrap();
-    for part in [
-        "817.0 Hz",
-        "at most with 9490 N s/m",
-        "most runout at 200.0 Hz",
-        "45.0 µm",
-    ] {
-        assert!(text.contains(part), "{part}: {text}");
-    }
-    assert!(
-        !String::from_utf8(with(&[]).stdout)
-            .unwrap()
-            .contains("most runout")
-    );
+    let text = with("--spin-hz=200").good();
+    has(&text, &["817.0 Hz", "at most with 9490 N s/m"]);
+    has(&text, &["most runout at 200.0 Hz", "45.0 µm"]);
+    lacks(&with("").good(), &["most runout"]);
 }
 
-/// A scene has its spin; the runout is given beside it.
+/// A scene has its spin; the runout is told beside it.
 #[test]
 fn a_runout_may_be_told_beside_a_scene() {
-    let path = scene_path("overload_then_release");
-    let output = advise(&[path.to_str().unwrap(), "--json", "--runout-m=6e-5"]);
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let json = advise("@overload_then_release --json --runout-m=6e-5").json();
     assert_eq!(json["nominal"]["spin_hz"], 200.0);
-    let warnings = json["warnings"].to_string();
-    assert!(warnings.contains("\"runout\""), "{warnings}");
+    has(&json["warnings"].to_string(), &["\"runout\""]);
 }

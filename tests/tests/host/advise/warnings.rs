@@ -5,7 +5,7 @@ use firmware_bench::advise::Advice;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::suggest::{Nominal, suggested};
 use supervisor::PARAMETERS;
-use system_tests::scene_path;
+use system_tests::ran::{edited, has, scene_text};
 
 /// Each warning by one change of a plant that has none but the one of almost every bearing, on either
 /// side of its threshold.
@@ -100,7 +100,7 @@ fn the_position_limit_is_below_the_rail() {
 /// A sensor that does not reach the wall, one that reaches hardly farther, and a limit beyond a rail that is far enough.
 #[test]
 fn a_sensor_that_does_not_see_the_wall_is_told() {
-    let warn = |range_m: f64, limit: Option<f32>| {
+    let told = |range_m: f64, limit: Option<f32>| {
         let nominal = Nominal {
             range_m: Some(range_m),
             ..amb()
@@ -112,48 +112,32 @@ fn a_sensor_that_does_not_see_the_wall_is_told() {
             .collect();
         let advice = Advice::new("test", &nominal, &set).unwrap();
         let warning = advice.warnings.iter().find(|w| w.key == "range");
-        (
-            warning.map(|w| format!("{}; {}", w.text, w.remedy)),
-            advice.supervisor_table,
-        )
+        let said = warning.map(|w| format!("{}; {}", w.text, w.remedy));
+        (said.unwrap_or_default(), advice.supervisor_table)
     };
-    let (text, table) = warn(1e-5, None);
-    assert!(
-        text.unwrap()
-            .contains("a touch is not seen; a sensor that reads beyond 0.2316 mm")
+    let (said, table) = told(1e-5, None);
+    has(
+        &said,
+        &["a touch is not seen; a sensor that reads beyond 0.2316 mm"],
     );
-    assert!(
-        table.contains("1.1                  # clearance; the least there is"),
-        "{table}"
+    has(
+        &table,
+        &["1.1                  # clearance; the least there is"],
     );
-    assert!(
-        warn(2.1e-4, None)
-            .0
-            .unwrap()
-            .contains("rail counts as a position")
-    );
-    assert_eq!(warn(8e-4, None).0, None);
-    let (text, _) = warn(8e-4, Some(20.0));
-    assert!(text.unwrap().contains("set position_limit = 3.80"));
+    has(&told(2.1e-4, None).0, &["rail counts as a position"]);
+    assert_eq!(told(8e-4, None).0, "");
+    has(&told(8e-4, Some(20.0)).0, &["set position_limit = 3.80"]);
 }
 
 /// With the weight fed forward the supervisor may be given the whole cap or what the weight leaves of it; who has done the
 /// second is not told to, and neither is taken for a table of another machine.
 #[test]
 fn what_a_weight_that_is_fed_forward_leaves_is_a_cap() {
-    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let own = scene_text("overload_then_release");
     let with = |force_max_n: f64, fed: bool| {
-        let text = own
-            .replacen(
-                "mass_kg = 10.0",
-                "mass_kg = 10.0\ngravity_m_s2 = [0.0, -14.0]",
-                1,
-            )
-            .replacen(
-                "[levitation]",
-                &format!("[levitation]\nfeed_forward_weight = {fed}"),
-                1,
-            );
+        let fed = format!("[levitation]\nfeed_forward_weight = {fed}");
+        let heavy = "mass_kg = 10.0\ngravity_m_s2 = [0.0, -14.0]";
+        let text = edited(&own, &[("mass_kg = 10.0", heavy), ("[levitation]", &fed)]);
         let text = format!("{text}\n[supervisor]\nforce_max_n = {force_max_n:?}\n");
         let scene = Scene::parse("scene", &text).unwrap();
         let plane = &scene.planes[0];
@@ -162,15 +146,12 @@ fn what_a_weight_that_is_fed_forward_leaves_is_a_cap() {
         (load.map(|w| w.remedy), scene.warnings)
     };
     let (remedy, warnings) = with(1000.0, true);
-    assert!(remedy.unwrap().contains("give the 860.0000 N"));
+    has(&remedy.unwrap(), &["give the 860.0000 N"]);
     assert_eq!(warnings, [""; 0]);
     assert_eq!(with(860.0, true), (None, vec![]));
     for (force_max_n, fed) in [(860.0, false), (700.0, true)] {
         let (_, warnings) = with(force_max_n, fed);
         assert_eq!(warnings.len(), 1, "{warnings:?}");
-        assert!(
-            warnings[0].contains("supervisor.force_max_n"),
-            "{warnings:?}"
-        );
+        has(&warnings[0], &["supervisor.force_max_n"]);
     }
 }

@@ -3,10 +3,10 @@
 use super::{CHECKS, checked, text};
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-use system_tests::{host, python, root, scene_path};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, has, ran};
+use system_tests::{python, root, scene_path};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -90,46 +90,38 @@ fn archive(path: &Path, version: &str, library: &[u8]) {
     archive.finish().unwrap();
 }
 
-fn traces(python: &Path, scene: &Path, out: &Path) -> Vec<PathBuf> {
+fn traces(python: &Path, folder: &Folder, scene: &str, out: &str) -> [String; 2] {
     let path = std::env::var("PATH").unwrap();
     let venv = python.parent().unwrap().display();
-    let mut run = host();
-    run.arg("run").arg(scene).arg("--out").arg(out);
-    let output = run.env("PATH", format!("{venv}:{path}")).output().unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{stderr}");
-    let trace = |policy| out.join(format!("trace_{policy}.parquet"));
-    ["levitation", "supervisor"].map(trace).to_vec()
+    let mut run = folder.command(&format!("run {scene} --out {out}"));
+    ran(run.env("PATH", format!("{venv}:{path}"))).good();
+    ["levitation", "supervisor"]
+        .map(|policy| text(&folder.at(&format!("{out}/trace_{policy}.parquet"))))
 }
 
 /// The PID as a unit of either version is the PID in Python, bit for bit, integrators that stand included.
 #[test]
 fn a_controller_may_be_a_unit() {
     let Some(python) = python() else { return };
-    let folder = TempDir::new().unwrap();
-    let library = folder.path().join("pid.so");
+    let folder = Folder::fresh();
     let mut cc = Command::new("cc");
     cc.args("-std=c99 -Wall -Wextra -Wpedantic -Werror -O2 -shared -fPIC -o".split(' '));
     let source = root().join("tests/tests/host/fmu/pid.c");
-    let compiled = cc.arg(&library).arg(source).arg("-lm").output().unwrap();
-    let stderr = String::from_utf8_lossy(&compiled.stderr);
-    assert!(compiled.status.success(), "{stderr}");
-    let library = fs::read(&library).unwrap();
+    ran(cc.arg(folder.at("pid.so")).arg(source).arg("-lm")).good();
+    let library = folder.bytes("pid.so");
 
-    let in_python = scene_path("controllers/pid_in_python");
-    let expected = traces(&python, &in_python, &folder.path().join("expected"));
-    let importer = in_python.with_file_name("fmu.py");
-    fs::copy(importer, folder.path().join("fmu.py")).unwrap();
-    let scene = fs::read_to_string(&in_python).unwrap();
-    let scene = scene.replace("python = \"pid.py\"", "python = \"fmu.py\"");
-    let own = folder.path().join("own.toml");
-    fs::write(&own, scene).unwrap();
+    let in_python = "controllers/pid_in_python";
+    let expected = traces(&python, &folder, &format!("@{in_python}"), "expected");
+    let importer = scene_path(in_python).with_file_name("fmu.py");
+    fs::copy(importer, folder.at("fmu.py")).unwrap();
+    let other = [("python = \"pid.py\"", "python = \"fmu.py\"")];
+    folder.scene("own.toml", in_python, &other);
     for version in ["2.0", "3.0"] {
-        archive(&folder.path().join("controller.fmu"), version, &library);
-        let computed = traces(&python, &own, &folder.path().join(version));
+        archive(&folder.at("controller.fmu"), version, &library);
+        let computed = traces(&python, &folder, "own.toml", version);
         for (one, other) in expected.iter().zip(&computed) {
-            let report = checked(&python, CHECKS, &["traces", text(one), text(other)]);
-            assert!(report.contains("rows the same"), "{report}");
+            let said = checked(&python, CHECKS, &["traces", one, other]);
+            has(&said, &["rows the same"]);
         }
     }
 }

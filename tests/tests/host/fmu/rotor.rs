@@ -8,10 +8,9 @@ use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
 use std::fmt::Write as _;
-use std::fs;
 use supervisor::{Command, IntegratorHint, Mode, Sample};
-use system_tests::{machine_scene_path, python};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, has};
+use system_tests::{python, scene};
 
 /// A sample as firmware has it, with what the levitation controller asks for.
 fn sample(seen: &Seen, levitation_n: [f32; 2]) -> Sample {
@@ -94,19 +93,19 @@ const COLUMNS: [&str; 16] = [
 #[test]
 fn the_supervisor_of_a_whole_rotor_is_the_native_one() {
     let Some(python) = python() else { return };
-    let path = machine_scene_path("overload_of_a_flexible_rotor");
-    let scene = Scene::parse("rotor", &fs::read_to_string(&path).unwrap()).unwrap();
+    let name = "machines/overload_of_a_flexible_rotor";
+    let scene = scene(name);
     let seen = closed_loop(&scene);
     let mut native = scene.supervisor().unwrap();
     let columns = [0, 1].map(|plane| COLUMNS.map(|name| format!("plane[{plane}].{name}")));
     let mut table = columns.concat().join(",") + "\n";
     let mut modes = Vec::new();
     for planes in &seen {
-        let samples = planes.map(|(seen, trace)| sample(&seen, trace.levitation_n));
+        let samples = planes.map(|(seen, said)| sample(&seen, said.levitation_n));
         let commands = native.tick(&samples).planes;
-        for ((_, trace), command) in planes.iter().zip(&commands) {
-            // What is replayed here is what the loop was given, and what it did.
-            assert_eq!(*trace, SupervisorTrace::new(command, trace.levitation_n));
+        for ((_, said), command) in planes.iter().zip(&commands) {
+            // What is replayed here is what the loop was told, and what it did.
+            assert_eq!(*said, SupervisorTrace::new(command, said.levitation_n));
             modes.push(command.mode);
         }
         let rows: Vec<String> = (samples.iter().zip(&commands))
@@ -118,14 +117,13 @@ fn the_supervisor_of_a_whole_rotor_is_the_native_one() {
     for mode in [Mode::Levitated, Mode::Bounce, Mode::Handover] {
         assert!(modes.contains(&mode), "{mode:?}");
     }
-    let folder = TempDir::new().unwrap();
-    let csv = folder.path().join("ticks.csv");
-    fs::write(&csv, table).unwrap();
+    let folder = Folder::fresh();
+    let csv = text(&folder.put("ticks.csv", table));
     for version in ["3.0", "2.0"] {
-        units(&path, folder.path(), version);
-        let unit = folder.path().join("supervisor.fmu");
-        let report = checked(&python, CHECKS, &["ticks", text(&unit), text(&csv)]);
+        units(&folder, &format!("@{name}"), version);
+        let unit = text(&folder.at("supervisor.fmu"));
+        let said = checked(&python, CHECKS, &["ticks", &unit, &csv]);
         let expected = format!("{} ticks of 2 planes the same", seen.len());
-        assert!(report.contains(&expected), "{report}");
+        has(&said, &[&expected]);
     }
 }

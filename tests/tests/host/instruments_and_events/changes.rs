@@ -65,9 +65,8 @@ fn a_lost_blade_settles_at_the_synchronous_amplitude() {
     }];
     scene.duration_s = 0.6;
     scene.changes = at(0.1, unbalance(2e-5));
-    let end = last(&ridden(&scene, PolicyKind::Passive).1)
-        .plant
-        .position_m;
+    let end = last(&ridden(&scene, PolicyKind::Passive).1).plant;
+    let end = end.position_m;
     let real = natural * natural - rate * rate;
     let size = real.hypot(1000.0 / 10.0 * rate);
     near("amplitude", end.norm(), 2e-5 * rate * rate / size, 1e-6);

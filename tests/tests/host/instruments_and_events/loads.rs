@@ -5,11 +5,13 @@ use crate::refusals::rows;
 use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::outcome::Outcome;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
 use plant_model::machine::params::Support;
 use std::f64::consts::{PI, TAU};
-use system_tests::{scene, scene_path};
+use system_tests::ran::{Folder, has, scene_text};
+use system_tests::scene;
 
 /// ∫ F·sin(πt/D) dt = 2FD/π, and what a double integral of it gives for the way.
 #[test]
@@ -153,34 +155,23 @@ fn a_rotor_on_the_wall_is_not_recovered_in_the_middle() {
 /// A rotor that a load from a file moves, against the exact way under a course of straight pieces; and a base that shakes.
 #[test]
 fn a_recorded_course_moves_a_free_rotor_exactly() {
-    let folder = tempfile::TempDir::new().unwrap();
+    let folder = Folder::fresh();
     // Rises to 300 N in 7 ms, falls to nothing in 5 ms, along y a constant; at no sample.
     let course = "time,fy,fx\n0.001003,200,0\n0.008003,200,300\n0.013003,200,0\n";
-    std::fs::write(folder.path().join("force.csv"), course).unwrap();
+    folder.put("force.csv", course);
     let text = r#"
 title = "a force from a file"
-[run]
-duration_s = 0.03
-sample_rate_hz = 20000
-policies = ["passive"]
-[rotor]
-mass_kg = 10.0
-contact_radius_m = 0.05
-[spin]
-frequency_hz = 0.0
-[contact]
-clearance_m = 1.0
-stiffness_n_m = 1e8
-[friction]
-coefficient = 0.1
-[verdict]
-whirl_speed_m_s = 1.0
+run = { duration_s = 0.03, sample_rate_hz = 20000, policies = ["passive"] }
+rotor = { mass_kg = 10.0, contact_radius_m = 0.05 }
+spin = { frequency_hz = 0.0 }
+contact = { clearance_m = 1.0, stiffness_n_m = 1e8 }
+friction = { coefficient = 0.1 }
+verdict = { whirl_speed_m_s = 1.0 }
 "#;
     let load = "[[disturbance]]\nfile = \"force.csv\"\ntime_column = \"time\"\nx_column = \"fx\"\n";
     let run_of = |more: &str| {
-        let path = folder.path().join("scene.toml");
-        std::fs::write(&path, format!("{text}{more}")).unwrap();
-        let scene = firmware_bench::scene::Scene::load(&path).unwrap();
+        let path = folder.put("scene.toml", format!("{text}{more}"));
+        let scene = Scene::load(&path).unwrap();
         last(&ridden(&scene, PolicyKind::Passive).1).plant
     };
     let end = run_of(&format!("{load}y_column = \"fy\"\nforce_n = [1.0, -0.5]\n"));
@@ -204,24 +195,18 @@ whirl_speed_m_s = 1.0
 /// What of a file cannot be had is said with key, file and what there is.
 #[test]
 fn a_file_that_is_no_course_is_refused() {
-    let folder = tempfile::TempDir::new().unwrap();
-    let of = scene_path("overload_then_release");
-    let text = std::fs::read_to_string(of).unwrap();
+    let folder = Folder::fresh();
+    let text = scene_text("overload_then_release");
     // The last of its tables.
-    let begin = text.find("[[disturbance]]").unwrap();
-    let refused = |file: &str, keys: &str| {
-        std::fs::write(folder.path().join("f.csv"), file).unwrap();
-        let path = folder.path().join("scene.toml");
-        let scene = format!("{}[[disturbance]]\n{keys}\n", &text[..begin]);
-        std::fs::write(&path, scene).unwrap();
-        let error = firmware_bench::scene::Scene::load(&path).unwrap_err();
-        format!("{:?}", miette::Report::new(error))
-    };
+    let (before, _) = text.split_once("[[disturbance]]").unwrap();
     for row in rows("files/course_of_a_load", 8) {
         let [file, keys, part] = &row[..] else {
             panic!("{row:?}")
         };
-        let said = refused(file, keys).replace('\n', " ");
-        assert!(said.contains(part), "{part}: {said}");
+        folder.put("f.csv", file);
+        let scene = format!("{before}[[disturbance]]\n{keys}\n");
+        let refused = Scene::load(&folder.put("scene.toml", scene)).unwrap_err();
+        let said = format!("{:?}", miette::Report::new(refused));
+        has(&said.replace('\n', " "), &[part]);
     }
 }

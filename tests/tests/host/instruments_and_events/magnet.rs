@@ -25,6 +25,17 @@ fn pushed(direction: V2) -> Scene {
     scene
 }
 
+/// From a time on, for ever.
+fn outage(delivers: Delivers, axis: Axis, start_s: f64) -> Outage {
+    Outage {
+        start_s,
+        duration_s: 1.0,
+        delivers,
+        axis,
+        known: false,
+    }
+}
+
 fn without_lag(scene: &mut Scene) {
     scene.machine.magnets[0].lag_s = 0.0;
 }
@@ -80,11 +91,8 @@ fn an_outage_lets_the_force_decay() {
         let mut scene = pushed(V2::new(0.8, 0.6));
         let (start_s, end_s) = (0.002_013, 0.003_027);
         scene.planes[0].outages = vec![Outage {
-            start_s,
             duration_s: end_s - start_s,
-            delivers: Delivers::Nothing,
-            axis,
-            known: false,
+            ..outage(Delivers::Nothing, axis, start_s)
         }];
         let lag = 1.6e-4;
         // The direction turns by some 1e-5 on the way.
@@ -123,13 +131,7 @@ fn a_faulty_amplifier_turns_the_force() {
         let mut scene = pushed(V2::new(0.8, 0.6));
         without_lag(&mut scene);
         let start_s = 0.002_013;
-        scene.planes[0].outages = vec![Outage {
-            start_s,
-            duration_s: 1.0,
-            delivers,
-            axis,
-            known: false,
-        }];
+        scene.planes[0].outages = vec![outage(delivers, axis, start_s)];
         for row in samples(&ridden(&scene, PolicyKind::Radial).1)
             .iter()
             .skip(2)
@@ -160,15 +162,8 @@ fn a_faulty_amplifier_turns_the_force() {
 /// An axis that delivers nothing does so whatever else is wrong, in any order, with a slew limit and without.
 #[test]
 fn a_dead_axis_is_dead_under_every_other_fault() {
-    let outage = |delivers, axis| Outage {
-        start_s: 0.0,
-        duration_s: 1.0,
-        delivers,
-        axis,
-        known: false,
-    };
-    let dead = outage(Delivers::Nothing, Axis::X);
-    let swapped = outage(Delivers::Swapped, Axis::Both);
+    let dead = outage(Delivers::Nothing, Axis::X, 0.0);
+    let swapped = outage(Delivers::Swapped, Axis::Both, 0.0);
     for (outages, slew_n_s) in [
         (vec![dead, swapped], None),
         (vec![swapped, dead], None),
@@ -274,32 +269,23 @@ fn commands_may_be_late_by_chance() {
 #[test]
 fn a_known_outage_is_told() {
     let mut scene = scene("overload_then_release");
-    let outage = |axis, known| Outage {
-        start_s: 0.0,
-        duration_s: 1.0,
-        delivers: Delivers::Nothing,
-        axis,
-        known,
-    };
-    let modes = |scene: &Scene| -> Vec<_> {
-        let trace = ridden(scene, PolicyKind::Supervisor).1;
-        samples(&trace)
-            .iter()
-            .map(|r| (r.supervisor_mode(), r.commanded_n))
-            .collect()
-    };
     scene.duration_s = 0.04;
-    scene.planes[0].outages = vec![outage(Axis::Both, false)];
-    let unknown = modes(&scene);
-    scene.planes[0].outages = vec![outage(Axis::Both, true)];
-    let known = modes(&scene);
-    assert!(unknown != known);
-    scene.planes[0].outages = vec![outage(Axis::X, true), outage(Axis::Y, true)];
-    assert!(modes(&scene) == known, "one after the other");
-    scene.planes[0].outages = vec![outage(Axis::X, true), outage(Axis::Y, false)];
-    let seen = modes(&scene);
-    assert!(seen.iter().all(|(_, force_n)| force_n.x == 0.0));
-    assert!(seen.iter().any(|(_, force_n)| force_n.y != 0.0));
+    let mut modes = |outages: &[(Axis, bool)]| -> Vec<_> {
+        let outage = |&(axis, known): &(Axis, bool)| Outage {
+            known,
+            ..outage(Delivers::Nothing, axis, 0.0)
+        };
+        scene.planes[0].outages = outages.iter().map(outage).collect();
+        let rows = samples(&ridden(&scene, PolicyKind::Supervisor).1).into_iter();
+        rows.map(|r| (r.supervisor_mode(), r.commanded_n)).collect()
+    };
+    let known = modes(&[(Axis::Both, true)]);
+    assert!(modes(&[(Axis::Both, false)]) != known);
+    let both = modes(&[(Axis::X, true), (Axis::Y, true)]);
+    assert!(both == known, "one after the other");
+    let told = modes(&[(Axis::X, true), (Axis::Y, false)]);
+    assert!(told.iter().all(|(_, force_n)| force_n.x == 0.0));
+    assert!(told.iter().any(|(_, force_n)| force_n.y != 0.0));
 }
 
 /// v̇ = −d/m·v, but for the delay; saturated it brakes with the cap.
@@ -336,11 +322,8 @@ fn outages_begin_at_any_time_under_a_slew_limit() {
     scene.planes[0].amplifier.slew_n_s = Some(2e6);
     for tenth_ms in 20..120 {
         scene.planes[0].outages = vec![Outage {
-            start_s: 1e-4 * f64::from(tenth_ms),
             duration_s: 3e-3,
-            delivers: Delivers::Nothing,
-            axis: Axis::X,
-            known: false,
+            ..outage(Delivers::Nothing, Axis::X, 1e-4 * f64::from(tenth_ms))
         }];
         let rows = samples(&ridden(&scene, PolicyKind::Radial).1);
         let out = rows
@@ -356,19 +339,19 @@ fn outages_begin_at_any_time_under_a_slew_limit() {
 }
 
 /// Whether the force is measured, and what it is [N], tick by tick.
-type AppliedForces = Rc<RefCell<Vec<(bool, [f32; 2])>>>;
+type Told = Rc<RefCell<Vec<(bool, [f32; 2])>>>;
 
-/// Keeps the forces that the supervisor behind it is given.
+/// Keeps what the supervisor behind it is told of the force.
 #[derive(Debug)]
 struct Listening {
     supervisor: Supervisor,
-    seen: AppliedForces,
+    told: Told,
 }
 
 impl Supervise for Listening {
     fn tick(&mut self, sample: &Sample) -> Command {
         let valid = sample.status.contains(Status::APPLIED_VALID);
-        self.seen.borrow_mut().push((valid, sample.applied_n));
+        self.told.borrow_mut().push((valid, sample.applied_n));
         self.supervisor.tick(sample)
     }
 }
@@ -381,17 +364,17 @@ fn a_measured_force_is_told() {
         let mut scene = scene("shock_15_g_on_amb");
         scene.planes[0].amplifier.force_measured = measured;
         scene.planes[0].feed_forward_n = V2::new(0.0, 98.1);
-        let seen = AppliedForces::default();
+        let told = Told::default();
         let supervisor = Listening {
             supervisor: Supervisor::new(&scene.planes[0].supervisor.unwrap()).unwrap(),
-            seen: Rc::clone(&seen),
+            told: Rc::clone(&told),
         };
         let policy = supervised(&scene, Box::new(supervisor)).unwrap();
         let acting = (policy, "supervisor");
         let (_, trace) = run_policy(&scene, acting, Keep::Trace, &mut |_| {}).unwrap();
-        let seen = seen.borrow();
+        let told = told.borrow();
         let mut most = 0.0_f64;
-        for (row, (valid, applied_n)) in samples(&trace).iter().zip(seen.iter()) {
+        for (row, (valid, applied_n)) in samples(&trace).iter().zip(told.iter()) {
             let expected = row.plant.delivered_n - scene.planes[0].feed_forward_n;
             assert_eq!(*valid, measured);
             let expected = if measured { expected } else { V2::zeros() };

@@ -6,11 +6,10 @@ use firmware_bench::device::loads::Shape;
 use firmware_bench::device::sensor_fault::FaultKind;
 use firmware_bench::scene::Scene;
 use plant_model::V2;
-use std::fs;
-use system_tests::scene_path;
+use system_tests::ran::scene_text;
 
 fn base() -> String {
-    fs::read_to_string(scene_path("shock_15_g_on_amb")).unwrap()
+    scene_text("shock_15_g_on_amb")
 }
 
 #[test]

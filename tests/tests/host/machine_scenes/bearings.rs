@@ -2,26 +2,20 @@
 
 use super::{ONE_PLANE, as_machine, machine, planes};
 use crate::refusals::{all, parsed};
-use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::contact::ball_bearing::BallBearing;
 use plant_model::params::ContactLaw;
-use serde_json::Value;
-use system_tests::{machine_scene_path, run_scene};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, edited, has, list, number};
 
 const STIFFNESS: &str = "stiffness_n_m = 1e8\nrestitution = 0.6\n";
 const BALLS: &str = "restitution = 0.6\nrestitution_speed_m_s = 0.1\nballs = { count = 14, diameter_m = 7.144e-3, contact_angle_deg = 15.0 }\n";
 
 fn with(contact: &str) -> String {
-    let text = ONE_PLANE.replace(STIFFNESS, contact);
-    assert_ne!(text, ONE_PLANE);
-    text
+    edited(ONE_PLANE, &[(STIFFNESS, contact)])
 }
 
 fn law(text: &str) -> (f64, f64) {
-    let scene = Scene::parse("test", text).unwrap_or_else(|e| panic!("{e}"));
-    match scene.machine.planes[0].contact.law {
+    match machine(text).machine.planes[0].contact.law {
         ContactLaw::HuntCrossley(law) => (law.stiffness_n_mn, law.exponent),
         ContactLaw::Linear(_) => panic!("linear"),
     }
@@ -45,38 +39,22 @@ fn balls_and_a_curve_give_the_law_that_follows_from_them() {
 fn contradictions_are_named() {
     all("scenes/one_plane", 9, ONE_PLANE, parsed);
     // With a plane and without, and not by series.
-    for (from, to, key) in [
-        (
-            "lag_s = 1.6e-4",
-            "lag_s = 1.6e-4\nlag_damping_ratio = 0.7",
-            "magnet.lag_damping_ratio",
-        ),
+    for (after, key, refused) in [
+        ("lag_s = 1.6e-4", "lag_damping_ratio = 0.7", "run.method"),
         (
             "drag_n_m_s = 1e-5",
-            "drag_n_m_s = 1e-5\nload_drag_m = 1e-5",
+            "load_drag_m = 1e-5",
             "race.load_drag_m",
         ),
-        (
-            "centre_offset_m = [2e-5, -1e-5]",
-            "centre_offset_m = [2e-5, -1e-5]\nheat = { capacity_j_k = 90.0 }",
-            "retainer.heat",
-        ),
+        ("[retainer]", "heat = { capacity_j_k = 90.0 }", ""),
     ] {
         for text in [ONE_PLANE, &as_machine()] {
-            let text = text.replace(from, to);
+            let text = edited(text, &[(after, &format!("{after}\n{key}"))]);
             machine(&text);
-            let series = text.replace("[run]", "[run]\nmethod = \"series\"");
-            let refused = Scene::parse("scene.toml", &series);
-            match key {
-                "retainer.heat" => assert!(refused.is_ok()),
-                "magnet.lag_damping_ratio" => {
-                    let message = refused.unwrap_err().to_string();
-                    assert!(message.contains("run.method"), "{message}");
-                }
-                key => {
-                    let message = refused.unwrap_err().to_string();
-                    assert!(message.contains(key), "{message}");
-                }
+            let series = edited(&text, &[("[run]", "[run]\nmethod = \"series\"")]);
+            match refused {
+                "" => _ = machine(&series),
+                refused => has(&parsed(&series, &[]), &[refused]),
             }
         }
     }
@@ -85,43 +63,36 @@ fn contradictions_are_named() {
 /// At ζ far above 1 an amplifier of second order is one of first order with 2ζτ.
 #[test]
 fn an_overdamped_amplifier_is_one_of_first_order() {
-    let quiet = as_machine()
-        .replace("noise_rms_m = 1e-6\n", "")
-        .replace("quantum_m = 1e-7\n", "");
-    let slow = quiet.replace("lag_s = 1.6e-4", "lag_s = 4e-6\nlag_damping_ratio = 20.0");
-    assert_ne!(slow, quiet);
-    let of = |text: &str| {
+    let ideal = [("noise_rms_m = 1e-6\n", ""), ("quantum_m = 1e-7\n", "")];
+    let quiet = edited(&as_machine(), &ideal);
+    let slow = ("lag_s = 1.6e-4", "lag_s = 4e-6\nlag_damping_ratio = 20.0");
+    let ends = |text: &str, method: &str| {
         let (figures, trace) = planes(&machine(text), PolicyKind::Levitation).remove(0);
-        (figures.method, trace)
-    };
-    let (first, second) = (of(&quiet), of(&slow));
-    assert_eq!((first.0, second.0), ("series", "collocation"));
-    let ends = |trace: &firmware_bench::run::trace::Trace| {
+        assert_eq!(figures.method, method);
         let row = trace.rows.iter().rev().find(|row| row.plant.t_s < 0.019);
-        row.map(|row| row.plant.position_m).unwrap()
+        row.unwrap().plant.position_m
     };
-    let off = (ends(&first.1) - ends(&second.1)).norm() / 2e-4;
+    let first = ends(&quiet, "series");
+    let second = ends(&edited(&quiet, &[slow]), "collocation");
+    let off = (first - second).norm() / 2e-4;
     assert!(off < 1e-4, "{off:e}");
 }
 
 /// What the table and the JSON say of bearings with heat.
 #[test]
 fn a_warm_bearing_is_told() {
-    let folder = TempDir::new().unwrap();
-    let path = machine_scene_path("coast_down_on_ball_bearings");
-    let result = run_scene(&path, folder.path(), &["--json", "--no-trace"]);
-    let json: Value = serde_json::from_slice(&result.stdout).unwrap();
-    let planes = json["policies"]["passive"]["planes"].as_array().unwrap();
+    let line = "run @machines/coast_down_on_ball_bearings --out out --json --no-trace";
+    let json = Folder::fresh().ran(line).json();
+    let planes = list(&json["policies"]["passive"]["planes"]);
     assert_eq!(planes.len(), 2);
     for plane in planes {
-        let bearing = &plane["bearing"];
-        let number = |key: &str| bearing[key].as_f64().unwrap();
-        let (heat_j, rise_k) = (number("heat_j"), number("temperature_rise_k"));
+        let of = |key: &str| number(&plane["bearing"][key]);
+        let (heat_j, rise_k) = (of("heat_j"), of("temperature_rise_k"));
         assert!(heat_j > 1.0);
         // 90 J/K, and next to nothing has leaked.
         assert!((rise_k * 90.0 / heat_j - 1.0).abs() < 0.01, "{rise_k}");
-        let want = 2e-4 + 2e-7 * rise_k;
-        assert!((number("clearance_m") / want - 1.0).abs() < 1e-9);
+        let said = 2e-4 + 2e-7 * rise_k;
+        assert!((of("clearance_m") / said - 1.0).abs() < 1e-9);
     }
     assert_eq!(json["policies"]["passive"].get("bearing"), None);
 }

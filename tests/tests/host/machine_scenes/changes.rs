@@ -4,6 +4,7 @@ use super::{apart, machine, planes};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
+use system_tests::ran::edited;
 
 /// A rotor on springs that is braked, thrown against its bearings.
 const BRAKED: &str = r#"
@@ -57,20 +58,17 @@ fn braked(eccentric: &str, drive: &str, mu: &str, more: &str) -> Scene {
 #[test]
 fn a_change_at_the_start_is_what_the_scene_could_have_said() {
     let unbalance = "position_m = 0.1\nmoment_kg_m = 2e-4\nangle_rad = 1.5\n";
+    let (eccentric, brake) = ("eccentricity_m = 1e-5", "drive_torque_n_m = -4.0");
     let so = braked(
-        "eccentricity_m = 1e-5",
-        "drive_torque_n_m = -4.0",
+        eccentric,
+        brake,
         "0.1",
         &format!("[[unbalance]]\n{unbalance}"),
     );
-    let becomes = braked(
-        "eccentricity_m = 1e-5",
-        "",
-        "0.2",
-        &format!(
-            "[[change]]\nat_s = 0.0\nfriction_coefficient = 0.1\ndrive_torque_n_m = -4.0\n[change.unbalance]\n{unbalance}"
-        ),
+    let change = format!(
+        "[[change]]\nat_s = 0.0\nfriction_coefficient = 0.1\n{brake}\n[change.unbalance]\n{unbalance}"
     );
+    let becomes = braked(eccentric, "", "0.2", &change);
     let ended = [so, becomes].map(|scene| planes(&scene, PolicyKind::Passive));
     for (a, b) in ended[0].iter().zip(&ended[1]) {
         assert!(a.0.impacts > 0);
@@ -138,18 +136,18 @@ fn a_blade_is_lost_at_its_time_and_place() {
 /// Places of a rotor by its shaft count from its left end, those of changes as well.
 #[test]
 fn places_count_as_the_scene_has_them() {
-    let by_shaft = BRAKED
-        .replace(
-            "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.03\nECCENTRIC",
-            "",
-        )
-        .replace("DRIVE", "")
-        .replace("MU", "0.1")
-        .replace("position_m = -0.2", "position_m = 0.1")
-        .replace("position_m = 0.0", "position_m = 0.4")
-        + "[[shaft]]\nlength_m = 0.8\nouter_diameter_m = 0.05\n\
-           [[change]]\nat_s = 0.01\nunbalance = { position_m = 0.6, moment_kg_m = 1e-5 }\n";
-    let scene = machine(&by_shaft);
+    let body =
+        "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.03\nECCENTRIC";
+    let edits = [
+        (body, ""),
+        ("DRIVE", ""),
+        ("MU", "0.1"),
+        ("position_m = -0.2", "position_m = 0.1"),
+        ("position_m = 0.0", "position_m = 0.4"),
+    ];
+    let shaft = "[[shaft]]\nlength_m = 0.8\nouter_diameter_m = 0.05\n";
+    let change = "[[change]]\nat_s = 0.01\nunbalance = { position_m = 0.6, moment_kg_m = 1e-5 }\n";
+    let scene = machine(&(edited(BRAKED, &edits) + shaft + change));
     let changed = scene.changes[0].change.unbalance.unwrap();
     assert!((changed.position_m - 0.2).abs() < 1e-12, "{changed:?}");
     planes(&scene, PolicyKind::Passive);

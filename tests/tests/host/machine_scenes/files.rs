@@ -10,25 +10,34 @@ use nalgebra::DMatrix;
 use npyz::WriterBuilder;
 use std::fs::{self, File};
 use std::io::Write;
-use std::path::{Path, PathBuf};
-use tempfile::TempDir;
+use std::path::Path;
+use system_tests::ran::{Folder, edited, has};
 use zip::write::SimpleFileOptions;
 
 /// Writes what `numpy.savez_compressed` would.
-fn save(path: &Path, arrays: &[(&str, DMatrix<f64>)]) {
+pub(crate) fn save(path: &Path, arrays: &[(&str, DMatrix<f64>)]) {
+    save_in(path, arrays, npyz::Order::C);
+}
+
+/// The same, with columns or rows that follow each other.
+pub(crate) fn save_in(path: &Path, arrays: &[(&str, DMatrix<f64>)], order: npyz::Order) {
     let mut archive = zip::ZipWriter::new(File::create(path).unwrap());
     for (name, matrix) in arrays {
         let shape: Vec<u64> = match matrix.ncols() {
             1 => vec![matrix.nrows() as u64],
             columns => vec![matrix.nrows() as u64, columns as u64],
         };
+        let by_columns = match order {
+            npyz::Order::C => matrix.transpose(),
+            npyz::Order::Fortran => matrix.clone(),
+        };
         let mut bytes = Vec::new();
         let options = npyz::WriteOptions::new();
-        let mut writer = (options.default_dtype().shape(&shape))
+        let mut writer = (options.default_dtype().shape(&shape).order(order))
             .writer(&mut bytes)
             .begin_nd()
             .unwrap();
-        writer.extend(matrix.transpose().iter().copied()).unwrap();
+        writer.extend(by_columns.iter().copied()).unwrap();
         writer.finish().unwrap();
         let options = SimpleFileOptions::default();
         archive.start_file(format!("{name}.npy"), options).unwrap();
@@ -43,10 +52,14 @@ fn numbers(matrix: &DMatrix<f64>) -> String {
 }
 
 /// Writes a scene and loads it from there.
-fn load(folder: &TempDir, text: &str) -> Result<Scene, String> {
-    let path: PathBuf = folder.path().join("scene.toml");
-    fs::write(&path, text).unwrap();
-    Scene::load(&path).map_err(|error| error.to_string())
+fn load(folder: &Folder, text: &str) -> Result<Scene, String> {
+    Scene::load(&folder.put("scene.toml", text)).map_err(|error| error.to_string())
+}
+
+/// A scene that is refused, with these words.
+#[track_caller]
+fn refused(folder: &Folder, text: &str, says: &[&str]) {
+    has(&load(folder, text).expect_err("taken"), says);
 }
 
 /// Three masses on a shaft without mass, as matrices and as numbers.
@@ -99,15 +112,9 @@ contact_radius_m = 0.05
 
 #[test]
 fn a_rotor_by_matrices_is_the_rotor_that_they_say() {
-    let folder = TempDir::new().unwrap();
-    save(&folder.path().join("rotor.npz"), &three_masses());
-    let at = |rotor: &str, left: f64, right: f64| {
-        (ON_SUPPORTS.replace("ROTOR", rotor))
-            .replace("LEFT", &left.to_string())
-            .replace("RIGHT", &right.to_string())
-    };
-    let by_file = at("matrices_file = \"rotor.npz\"", 0.1, 0.7);
-    let by_file = load(&folder, &by_file).unwrap();
+    let folder = Folder::fresh();
+    save(&folder.at("rotor.npz"), &three_masses());
+    let by_file = load(&folder, &on_supports(BY_FILE, 0.1, 0.7)).unwrap();
     // Mass 10 kg at 0.46 m; out of line it gives by (4/7)²/2 + 1/5 + (3/7)²/3 per kg, in the shape out/m of 10 kg.
     let mobility: f64 = 16.0 / 49.0 / 2.0 + 0.2 + 9.0 / 49.0 / 3.0;
     let size = (10.0 / mobility).sqrt();
@@ -118,7 +125,7 @@ fn a_rotor_by_matrices_is_the_rotor_that_they_say() {
         "mass_kg = 10.0\ntransverse_inertia_kg_m2 = {transverse:?}\npolar_inertia_kg_m2 = 0.0\n\
          bending = [{{ frequency_hz = {hz:?}, positions_m = [-0.36, -0.06, 0.34], displacements = {shape:?} }}]"
     );
-    let by_numbers = machine(&at(&by_numbers, -0.36, 0.24));
+    let by_numbers = machine(&on_supports(&by_numbers, -0.36, 0.24));
     let [by_file, by_numbers] =
         [&by_file, &by_numbers].map(|scene| planes(scene, PolicyKind::Passive));
     let impacts = [0, 1].map(|plane| by_file[plane].0.impacts);
@@ -129,53 +136,52 @@ fn a_rotor_by_matrices_is_the_rotor_that_they_say() {
     }
 }
 
+const BY_FILE: &str = "matrices_file = \"rotor.npz\"";
+
+fn on_supports(rotor: &str, left: f64, right: f64) -> String {
+    (ON_SUPPORTS.replace("ROTOR", rotor))
+        .replace("LEFT", &left.to_string())
+        .replace("RIGHT", &right.to_string())
+}
+
 #[test]
 fn files_that_are_no_rotor_are_refused_by_name() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("rotor.npz");
-    let scene = ON_SUPPORTS
-        .replace("ROTOR", "matrices_file = \"rotor.npz\"")
-        .replace("LEFT", "0.1")
-        .replace("RIGHT", "0.7");
-    let refused = |text: &str, says: &[&str]| {
-        let error = load(&folder, text).expect_err("taken");
-        assert!(says.iter().all(|says| error.contains(says)), "{error}");
-    };
-    refused(
-        &scene,
-        &["rotor.matrices_file", "rotor.npz", "No such file"],
-    );
+    let folder = Folder::fresh();
+    let path = folder.at("rotor.npz");
+    let scene = on_supports(BY_FILE, 0.1, 0.7);
+    let file = ["rotor.matrices_file", "rotor.npz", "No such file"];
+    refused(&folder, &scene, &file);
     fs::write(&path, "no archive").unwrap();
-    refused(&scene, &["rotor.matrices_file", "rotor.npz"]);
-    save(&path, &three_masses()[1..]);
-    refused(&scene, &["has no array M"]);
-    let mut odd = three_masses();
-    odd[1].1[(0, 1)] += 1.0;
-    save(&path, &odd);
-    refused(&scene, &["K of rotor.npz", "symmetric"]);
+    refused(&folder, &scene, &file[..2]);
+    let [m, k, ..] = three_masses().map(|(_, matrix)| matrix);
+    let mut odd = k.clone();
+    odd[(0, 1)] += 1.0;
+    let mut cases = vec![(three_masses()[1..].to_vec(), "has no array M")];
+    let mut odd_one = three_masses().to_vec();
+    odd_one[1].1 = odd;
+    cases.push((odd_one, "K of rotor.npz"));
     // A damping that drives, and an inertia that no body has, by their names in the file.
-    let out = three_masses()[1].1.clone();
-    for (name, matrix) in [
-        ("D", -1e-4 * &out),
-        ("G", 1e3 * three_masses()[0].1.clone()),
+    for (name, matrix, says) in [
+        ("D", -1e-4 * k, "D of rotor.npz"),
+        ("G", 1e3 * m, "G of rotor.npz"),
     ] {
-        let mut more = three_masses().to_vec();
-        more.push((name, matrix));
-        save(&path, &more);
-        refused(
-            &scene,
-            &["rotor.matrices_file", &format!("{name} of rotor.npz")],
-        );
+        cases.push(([&three_masses()[..], &[(name, matrix)]].concat(), says));
+    }
+    for (arrays, says) in cases {
+        save(&path, &arrays);
+        refused(&folder, &scene, &["rotor.matrices_file", says]);
     }
     save(&path, &three_masses());
     load(&folder, &scene).unwrap();
     let outside = scene.replace("position_m = 0.7", "position_m = 0.9");
-    refused(&outside, &["plane[1].position_m: is 0.9", "places_m"]);
-    let twice = scene.replace("[rotor]", "[rotor]\nmass_kg = 3.0");
     refused(
-        &twice,
-        &["rotor.mass_kg", "follows from rotor.matrices_file"],
+        &folder,
+        &outside,
+        &["plane[1].position_m: is 0.9", "places_m"],
     );
+    let twice = scene.replace("[rotor]", "[rotor]\nmass_kg = 3.0");
+    let says = ["rotor.mass_kg", "follows from rotor.matrices_file"];
+    refused(&folder, &twice, &says);
 }
 
 /// PD by differences as a state space that remembers the last readings.
@@ -192,31 +198,27 @@ fn pd(proportional: &DMatrix<f64>, rates: &DMatrix<f64>) -> [(&'static str, DMat
 
 #[test]
 fn gains_as_a_state_space_levitate_alike() {
-    let gains = ONE_PLANE
-        .replace("integral_n_m_s = 1e6\n", "")
-        .replace("derivative_filter_s = 1e-4\n", "")
-        .replace("position_m = [1e-5, 0.0]\n", "")
-        .replace("noise_rms_m = 1e-6\n", "")
-        .replace("quantum_m = 1e-7\n", "")
-        .replace("runout_m = 2e-6\n", "")
-        .replace("[retainer]\ncentre_offset_m = [2e-5, -1e-5]\n", "")
-        .replace("feed_forward_weight = true\n", "");
-    let controller = pd(
-        &DMatrix::from_diagonal_element(2, 2, 4e5),
-        &DMatrix::from_diagonal_element(2, 2, 900.0),
-    );
-    let table: String = controller
+    let bare = [
+        "integral_n_m_s = 1e6\n",
+        "derivative_filter_s = 1e-4\n",
+        "position_m = [1e-5, 0.0]\n",
+        "noise_rms_m = 1e-6\n",
+        "quantum_m = 1e-7\n",
+        "runout_m = 2e-6\n",
+        "[retainer]\ncentre_offset_m = [2e-5, -1e-5]\n",
+        "feed_forward_weight = true\n",
+    ];
+    let gains = edited(ONE_PLANE, &bare.map(|line| (line, "")));
+    let diagonal = |x: f64| DMatrix::from_diagonal_element(2, 2, x);
+    let table: String = pd(&diagonal(4e5), &diagonal(900.0))
         .iter()
         .map(|(name, matrix)| format!("{} = {}\n", name.to_lowercase(), numbers(matrix)))
         .collect();
     let old = "[levitation]\nproportional_n_m = 4e5\nderivative_n_s_m = 900.0\n";
-    assert!(gains.contains(old));
-    let own = gains.replace(old, &format!("[state_space]\n{table}"));
+    let own = edited(&gains, &[(old, &format!("[state_space]\n{table}"))]);
     for kind in [PolicyKind::Levitation, PolicyKind::Supervisor] {
-        let [a, b] = [&gains, &own].map(|text| {
-            let scene = Scene::parse("test", text).unwrap_or_else(|e| panic!("{e}"));
-            run(&scene, kind, Keep::Trace, &mut |_| {}).unwrap()
-        });
+        let [a, b] =
+            [&gains, &own].map(|text| run(&machine(text), kind, Keep::Trace, &mut |_| {}).unwrap());
         assert!(a.0.impacts > 0, "{kind:?}");
         let off = apart(&a.1, &b.1);
         assert!(off < 1e-6, "{kind:?} {off:e}");
@@ -225,19 +227,17 @@ fn gains_as_a_state_space_levitate_alike() {
 
 #[test]
 fn a_state_space_holds_a_whole_rotor_as_levitation_by_mode_does() {
-    let folder = TempDir::new().unwrap();
-    let by_mode = LEVITATED
-        .replace("integral_n_m_s = 4e6\n", "")
-        .replace("derivative_filter_s = 1e-4\n", "")
-        .replace("CROSS", "0.0")
-        .replace(
-            "start_position_m = [6e-5, 0.0]",
-            "start_velocity_m_s = [3e-2, 0.0]",
-        )
-        .replace(
-            "start_position_m = [-6e-5, 0.0]",
-            "start_velocity_m_s = [-2e-2, 1e-2]",
-        );
+    let folder = Folder::fresh();
+    let by_mode = edited(
+        LEVITATED,
+        &[
+            ("integral_n_m_s = 4e6\n", ""),
+            ("derivative_filter_s = 1e-4\n", ""),
+            ("CROSS", "0.0"),
+            ("position_m = [6e-5, 0.0]", "velocity_m_s = [3e-2, 0.0]"),
+            ("position_m = [-6e-5, 0.0]", "velocity_m_s = [-2e-2, 1e-2]"),
+        ],
+    );
     let weights = Weights::new(&[-0.2, 0.25]);
     let of = |w: &[f64]| {
         let column = DMatrix::from_column_slice(2, 1, w);
@@ -248,7 +248,7 @@ fn a_state_space_holds_a_whole_rotor_as_levitation_by_mode_does() {
         &(1.4e6 * &centre + 3e4 * &tilt),
         &(3e3 * &centre + 60.0 * &tilt),
     );
-    save(&folder.path().join("controller.npz"), &controller);
+    save(&folder.at("controller.npz"), &controller);
     let start = by_mode.find("[levitation]").unwrap();
     let end = by_mode.find("[[plane]]").unwrap();
     let own = format!(
@@ -264,16 +264,12 @@ fn a_state_space_holds_a_whole_rotor_as_levitation_by_mode_does() {
         assert!(off < 1e-7, "{off:e} clearances");
     }
 
-    let refused = |text: &str, says: &[&str]| {
-        let error = load(&folder, text).expect_err("taken");
-        assert!(says.iter().all(|says| error.contains(says)), "{error}");
-    };
     let both = format!("{own}levitation = {{ proportional_n_m = 1.0, derivative_n_s_m = 1.0 }}\n");
-    refused(&both, &["plane[1].levitation", "[state_space]"]);
+    refused(&folder, &both, &["plane[1].levitation", "[state_space]"]);
     let wide = own.replace("file = \"controller.npz\"", "d = [1.0, 2.0]");
-    refused(&wide, &["state_space.d", "expected 4 × 4 = 16"]);
+    refused(&folder, &wide, &["state_space.d", "expected 4 × 4 = 16"]);
     let mut short = controller;
     short[1].1 = short[1].1.clone().remove_row(0);
-    save(&folder.path().join("controller.npz"), &short);
-    refused(&own, &["B is 3 × 4, expected 4 × 4"]);
+    save(&folder.at("controller.npz"), &short);
+    refused(&folder, &own, &["B is 3 × 4, expected 4 × 4"]);
 }

@@ -2,7 +2,6 @@
 
 use super::{apart, machine, planes};
 use crate::refusals::{all, parsed};
-use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 
@@ -60,26 +59,16 @@ fn levitation_by_mode_holds_translation_and_tilt() {
         let scene = machine(&LEVITATED.replace("CROSS", cross));
         let weights: Vec<f64> = (scene.planes.iter()).map(|p| p.weight_n.y).collect();
         assert!((weights.iter().sum::<f64>() + 20.0 * 9.81).abs() < 1e-9);
-        assert!(
-            (weights[0] * -0.2 + weights[1] * 0.25).abs() < 1e-9,
-            "{weights:?}"
-        );
+        let moment = weights[0] * -0.2 + weights[1] * 0.25;
+        assert!(moment.abs() < 1e-9, "{weights:?}");
         let ended = planes(&scene, PolicyKind::Levitation);
-        let late = |trace: &Trace| {
-            let rows = trace
-                .rows
-                .iter()
-                .filter(|row| row.plant.t_s > 0.03 && row.plant.t_s < 0.06);
-            rows.map(|row| row.plant.position_m.norm())
-                .fold(0.0, f64::max)
-        };
         for (figures, _) in &ended {
             assert_eq!(figures.impacts, 0);
             assert!(figures.recovered, "cross {cross}: {:?}", figures.outcome);
         }
-        ended
-            .iter()
-            .map(|(_, trace)| late(trace))
+        let rows = ended.iter().flat_map(|(_, trace)| &trace.rows);
+        let late = rows.filter(|row| row.plant.t_s > 0.03 && row.plant.t_s < 0.06);
+        late.map(|row| row.plant.position_m.norm())
             .fold(0.0, f64::max)
     };
     let [without, with] = ["0.0", "0.8"].map(swing);

@@ -2,154 +2,115 @@
 
 use super::{TWO_PLANES, machine};
 use crate::refusals::{all, parsed};
-use firmware_bench::scene::Scene;
 use serde_json::Value;
-use std::fs;
-use std::process::Output;
-use system_tests::{host, machine_scene_path, scene_path};
-use tempfile::TempDir;
+use std::f64::consts::TAU;
+use system_tests::ran::{Folder, edited, has, list, number, ran};
 
-fn modes(args: &[&str]) -> Output {
-    host()
-        .arg("modes")
-        .args(args)
-        .output()
-        .expect("the host starts")
+/// What is said of a scene in JSON.
+fn json(folder: &Folder, words: &str) -> Value {
+    folder.ran(&format!("modes --json {words}")).json()
 }
 
-fn json(args: &[&str]) -> Value {
-    let output = modes(&[args, &["--json"]].concat());
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{errors}");
-    serde_json::from_slice(&output.stdout).unwrap()
+fn numbers(value: &Value) -> Vec<f64> {
+    list(value).iter().map(number).collect()
 }
 
 /// A translation moves every place alike, a tilt as its distance; friction holds whirl from above the slowest backward mode.
 #[test]
 fn a_scene_has_shapes_and_whirl_that_friction_holds() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("scene.toml");
-    let springs = [-0.2, 0.2]
-        .map(|z| {
-            format!("[[support]]\nposition_m = {z}\nstiffness_n_m = 1e6\ndamping_n_s_m = 10.0\n")
-        })
-        .concat();
-    fs::write(&path, TWO_PLANES.to_owned() + &springs).unwrap();
-    let name = path.to_str().unwrap();
-    let found = json(&[name, "--points", "2"]);
-    let numbers = |value: &Value| -> Vec<f64> {
-        value
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|x| x.as_f64().unwrap())
-            .collect()
+    let folder = Folder::fresh();
+    let spring = |z: f64| {
+        format!("[[support]]\nposition_m = {z}\nstiffness_n_m = 1e6\ndamping_n_s_m = 10.0\n")
     };
+    folder.put(
+        "scene.toml",
+        TWO_PLANES.to_owned() + &[-0.2, 0.2].map(spring).concat(),
+    );
+    let found = json(&folder, "scene.toml --points 2");
     let places = numbers(&found["shape_positions_m"]);
     assert_eq!(places, [-0.2, 0.2, 0.3]);
-    let shapes = found["mode_shapes"].as_array().unwrap();
+    let shapes = list(&found["mode_shapes"]);
     assert_eq!(shapes.len(), 4);
     for shape in shapes {
-        let tau = std::f64::consts::TAU;
-        let translates = shape["frequency_hz"].as_f64().unwrap() * tau > 0.5 * 2e5_f64.sqrt() * 1.7;
+        let translates = number(&shape["frequency_hz"]) * TAU > 0.5 * 2e5_f64.sqrt() * 1.7;
         let (along, across) = (numbers(&shape["along"]), numbers(&shape["across"]));
         for (z, (a, b)) in places.iter().zip(along.iter().zip(&across)) {
             let expected = if translates { 1.0 } else { z / 0.3 };
             assert!((a - expected).abs() < 1e-6 && b.abs() < 1e-6, "{z} {a} {b}");
         }
     }
-    let held = found["held_whirl"].as_array().unwrap();
-    let of = |range: &&Value, count: usize| range["planes"].as_array().unwrap().len() == count;
-    let slowest = held
-        .iter()
-        .filter(|range| of(range, 1))
-        .map(|r| numbers(&r["rates_rad_s"])[0]);
+    let held = list(&found["held_whirl"]).iter();
+    let of = |count: usize| {
+        held.clone()
+            .filter(move |r| list(&r["planes"]).len() == count)
+    };
+    let slowest = of(1).map(|r| numbers(&r["rates_rad_s"])[0]);
     let tilt = (2e6 * 0.04 / 0.6_f64).sqrt();
     assert!(slowest.clone().count() >= 2);
     assert!(slowest.fold(f64::INFINITY, f64::min) > tilt);
-    assert!(held.iter().any(|range| of(&range, 2)));
+    assert!(of(2).count() > 0);
     // Walls that hold the rotor leave no clearance to whirl in.
-    assert!(json(&[name, "--points", "2", "--contact"])["held_whirl"].is_null());
-    let text = String::from_utf8(modes(&[name]).stdout).unwrap();
-    assert!(
-        text.contains("backward whirl that friction can hold at 100 Hz"),
-        "{text}"
-    );
+    let walled = json(&folder, "scene.toml --points 2 --contact");
+    assert!(walled["held_whirl"].is_null());
+    let text = folder.ran("modes scene.toml").good();
+    has(&text, &["backward whirl that friction can hold at 100 Hz"]);
 }
 
 /// Two springs under a rigid rotor: translation at √(2k/m) both ways, the tilt apart by the spin.
 #[test]
 fn a_scene_has_the_modes_of_its_rotor() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("scene.toml");
-    let springs = [-0.2, 0.2]
-        .map(|z| format!("[[support]]\nposition_m = {z}\nstiffness_n_m = 1e6\n"))
-        .concat();
-    let text = TWO_PLANES.replace("polar_inertia_kg_m2 = 0.0", "polar_inertia_kg_m2 = 0.5");
-    fs::write(
-        &path,
-        text + &springs + "[[unbalance]]\nposition_m = 0.0\nmoment_kg_m = 1e-5\n",
-    )
-    .unwrap();
-    let found = json(&[path.to_str().unwrap(), "--to-hz", "100", "--points", "2"]);
-    let tau = std::f64::consts::TAU;
+    let folder = Folder::fresh();
+    let spring = |z: f64| format!("[[support]]\nposition_m = {z}\nstiffness_n_m = 1e6\n");
+    let polar = ("polar_inertia_kg_m2 = 0.0", "polar_inertia_kg_m2 = 0.5");
+    let unbalance = "[[unbalance]]\nposition_m = 0.0\nmoment_kg_m = 1e-5\n";
+    let springs = [-0.2, 0.2].map(spring).concat();
+    folder.put(
+        "scene.toml",
+        edited(TWO_PLANES, &[polar]) + &springs + unbalance,
+    );
+    let found = json(&folder, "scene.toml --to-hz 100 --points 2");
     let at = |spin: f64, whirl: &str| {
-        let modes = found["modes"].as_array().unwrap().iter();
-        let near = |m: &&Value| (m["spin_rad_s"].as_f64().unwrap() - spin).abs() < 1e-9;
+        let modes = list(&found["modes"]).iter();
+        let near = |m: &&Value| (number(&m["spin_rad_s"]) - spin).abs() < 1e-9;
         let mut rates: Vec<f64> = modes
             .filter(near)
             .filter(|m| m["whirl"] == whirl)
-            .map(|m| tau * m["frequency_hz"].as_f64().unwrap())
+            .map(|m| TAU * number(&m["frequency_hz"]))
             .collect();
         rates.sort_by(f64::total_cmp);
+        assert_eq!(rates.len(), 2, "{rates:?}");
         rates
     };
-    let (spin, translation) = (100.0 * tau, (2e6_f64 / 10.0).sqrt());
+    let (spin, translation) = (100.0 * TAU, (2e6_f64 / 10.0).sqrt());
     let half = 0.5 * spin * 0.5 / 0.6;
     let root = (half * half + 2e6 * 0.04 / 0.6).sqrt();
+    let alike = |a: &[f64], b: &[f64]| {
+        let off = a.iter().zip(b).map(|(a, b)| (a / b - 1.0).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-9, "{a:?}, {b:?}");
+    };
     for (whirl, tilt) in [("forward", root + half), ("backward", root - half)] {
         let mut expected = [translation, tilt];
         expected.sort_by(f64::total_cmp);
-        let found = at(spin, whirl);
-        assert_eq!(found.len(), 2, "{found:?}");
-        for (a, b) in found.iter().zip(expected) {
-            assert!(
-                (a / b - 1.0).abs() < 1e-9,
-                "{whirl}: {found:?}, {expected:?}"
-            );
-        }
+        alike(&at(spin, whirl), &expected);
     }
-    for (a, b) in at(0.0, "forward").iter().zip(at(0.0, "backward")) {
-        assert!((a / b - 1.0).abs() < 1e-9);
-    }
-    assert_eq!(at(0.0, "forward").len(), 2);
+    alike(&at(0.0, "forward"), &at(0.0, "backward"));
     // U·Ω²/|k − m·Ω²| in every plane: it does not tilt.
-    let response = &found["unbalance_response"][1]["planes_m"];
+    let response = numbers(&found["unbalance_response"][1]["planes_m"]);
     let expected = 1e-5 * spin * spin / (2e6 - 10.0 * spin * spin).abs();
-    for plane in response.as_array().unwrap() {
-        assert!((plane.as_f64().unwrap() / expected - 1.0).abs() < 1e-9);
-    }
-    let mass = found["effective_mass_kg"][0].as_f64().unwrap();
-    assert!((mass - 6.0).abs() < 1e-9);
+    alike(&response, &vec![expected; response.len()]);
+    alike(&numbers(&found["effective_mass_kg"])[..1], &[6.0]);
 }
 
 #[test]
 fn the_command_draws_its_page() {
-    let folder = TempDir::new().unwrap();
-    let page = folder.path().join("page.html");
-    let flexible = machine_scene_path("overload_of_a_flexible_rotor");
-    let output = modes(&[
-        flexible.to_str().unwrap(),
-        "--levitated",
-        "--html",
-        page.to_str().unwrap(),
-    ]);
-    assert!(output.status.success());
-    let table = String::from_utf8(output.stdout).unwrap();
-    for words in ["critical speed [Hz]", "forward", "coupling end struck"] {
-        assert!(table.contains(words), "{table}");
-    }
-    let page = fs::read_to_string(page).unwrap();
+    let folder = Folder::fresh();
+    let line = "modes @machines/overload_of_a_flexible_rotor --levitated --html page.html";
+    let table = folder.ran(line).good();
+    has(
+        &table,
+        &["critical speed [Hz]", "forward", "coupling end struck"],
+    );
+    let page = folder.text("page.html");
     // Without unbalance there is no response to it.
     assert!(page.contains("Campbell diagram") && page.matches("<svg").count() == 3);
 }
@@ -157,61 +118,44 @@ fn the_command_draws_its_page() {
 /// A rotor that the gains hold and one that lags too far behind: said by the command, in numbers and on its own.
 #[test]
 fn a_loop_is_judged() {
-    let rigid = scene_path("one_machine/rigid");
-    let found = json(&[rigid.to_str().unwrap(), "--levitated", "--points", "2"]);
+    let folder = Folder::fresh();
+    let found = json(&folder, "@one_machine/rigid --levitated --points 2");
     assert_eq!(found["stable"], true);
     assert_eq!(found["range"]["held"], "levitated");
-    for axis in found["sensitivity"].as_array().unwrap() {
-        let number = |key: &str| axis[key].as_f64().unwrap();
-        assert!((number("peak_db") - 20.0 * number("peak").log10()).abs() < 1e-9);
-        assert_eq!(axis["zone"] == "A", number("peak") < 3.0, "{axis}");
+    for axis in list(&found["sensitivity"]) {
+        let [peak_db, peak] = ["peak_db", "peak"].map(|key| number(&axis[key]));
+        assert!((peak_db - 20.0 * peak.log10()).abs() < 1e-9);
+        assert_eq!(axis["zone"] == "A", peak < 3.0, "{axis}");
     }
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("late.toml");
-    let late = fs::read_to_string(&rigid)
-        .unwrap()
-        .replace("lag_s = 1.6e-4", "lag_s = 1.6e-2");
-    fs::write(&path, late).unwrap();
-    let name = path.to_str().unwrap();
-    let found = json(&[name, "--levitated", "--points", "2"]);
+    let late = [("lag_s = 1.6e-4", "lag_s = 1.6e-2")];
+    folder.scene("late.toml", "one_machine/rigid", &late);
+    let found = json(&folder, "late.toml --levitated --points 2");
     assert_eq!(found["stable"], false);
-    let growing = |mode: &Value| mode["growth_1_s"].as_f64().unwrap() > 1.0;
-    assert!(found["loop_modes"].as_array().unwrap().iter().any(growing));
-    for command in [
-        &["modes"][..],
-        &["run", "--quiet", "--out", "out"],
-        &["advise"],
-    ] {
-        let output = host()
-            .current_dir(folder.path())
-            .args(command)
-            .arg(name)
-            .output()
-            .unwrap();
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert!(
-            errors.contains("makes a loop that is not stable"),
-            "{errors}"
-        );
+    let mut growth = list(&found["loop_modes"])
+        .iter()
+        .map(|m| number(&m["growth_1_s"]));
+    assert!(growth.any(|growth| growth > 1.0));
+    for command in ["modes", "run --quiet --out out", "advise"] {
+        let said = folder.ran(&format!("{command} late.toml")).said;
+        has(&said, &["makes a loop that is not stable"]);
     }
     // A point mass has a loop, and no other modes.
-    let one = scene_path("shock_15_g_on_amb");
-    let found = json(&[one.to_str().unwrap(), "--levitated"]);
+    let found = json(&folder, "@shock_15_g_on_amb --levitated");
     assert_eq!(found["sensitivity"][0]["axis"], "x");
 }
 
 /// A uniform shaft between two planes.
-const SHAFT: &str = "[[shaft]]\nlength_m = 0.5\nouter_diameter_m = 0.06\n[[shaft]]\nlength_m = 0.5\nouter_diameter_m = 0.06\n";
+const INERTIAS: &str =
+    "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.0\n";
 
 fn shaft() -> String {
-    TWO_PLANES
-        .replace(
-            "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.0\n",
-            "bending_to_hz = 1000.0\n",
-        )
-        .replace("position_m = -0.2", "position_m = 0.1")
-        .replace("position_m = 0.3\n", "position_m = 1.0\n")
-        + SHAFT
+    let edits = [
+        (INERTIAS, "bending_to_hz = 1000.0\n"),
+        ("position_m = -0.2", "position_m = 0.1"),
+        ("position_m = 0.3\n", "position_m = 1.0\n"),
+    ];
+    let section = "[[shaft]]\nlength_m = 0.5\nouter_diameter_m = 0.06\n";
+    edited(TWO_PLANES, &edits) + section + section
 }
 
 #[test]
@@ -222,20 +166,15 @@ fn a_shaft_is_the_rotor_that_it_weighs() {
     assert!((rotor.rigid().mass_kg / mass - 1.0).abs() < 1e-12);
     assert_eq!(rotor.bending().len(), 2);
     // From the left end in the file, from the centre of mass in the machine.
-    let places: Vec<f64> = scene.machine.planes.iter().map(|p| p.position_m).collect();
-    assert!(
-        (places[0] + 0.4).abs() < 1e-12 && (places[1] - 0.5).abs() < 1e-12,
-        "{places:?}"
-    );
-    // What the other modes give way makes the contact softer.
-    for plane in &scene.machine.planes {
+    for (plane, place) in scene.machine.planes.iter().zip([-0.4, 0.5]) {
+        assert!((plane.position_m - place).abs() < 1e-12, "{plane:?}");
+        // What the other modes give way makes the contact softer.
         let stiffness = plane.contact.law.linear().unwrap().stiffness_n_m;
         assert!(stiffness > 0.5e8 && stiffness < 0.99e8, "{stiffness:e}");
     }
-    let rigid = machine(&shaft().replace("bending_to_hz = 1000.0", "bending_to_hz = 0.0"));
+    let rigid = machine(&edited(&shaft(), &[("to_hz = 1000.0", "to_hz = 0.0")]));
     assert!(rigid.machine.rotor.bending().is_empty());
-    let start = |scene: &Scene| scene.start;
-    assert_eq!(start(&rigid), start(&scene));
+    assert_eq!(rigid.start, scene.start);
 }
 
 #[test]
@@ -245,51 +184,30 @@ fn what_is_no_shaft_is_refused_with_its_key() {
 
 #[test]
 fn advice_is_for_every_plane_or_for_one() {
-    let flexible = machine_scene_path("overload_of_a_flexible_rotor");
-    let advise = |args: &[&str]| {
-        let mut command = host();
-        command.arg("advise").arg(&flexible).args(args);
-        command.output().expect("the host starts")
-    };
-    let all: Value = serde_json::from_slice(&advise(&["--json"]).stdout).unwrap();
-    assert_eq!(all["planes"].as_array().unwrap().len(), 2);
-    assert_eq!(
-        all["coupling"]["effective_mass_kg"]
-            .as_array()
-            .unwrap()
-            .len(),
-        2
-    );
-    let one: Value =
-        serde_json::from_slice(&advise(&["--plane", "far end", "--json"]).stdout).unwrap();
+    let folder = Folder::fresh();
+    let line = "advise @machines/overload_of_a_flexible_rotor";
+    let all = folder.ran(&format!("{line} --json")).json();
+    assert_eq!(list(&all["planes"]).len(), 2);
+    assert_eq!(list(&all["coupling"]["effective_mass_kg"]).len(), 2);
+    let mut one = folder.command(&format!("{line} --json"));
+    let one = ran(one.args(["--plane", "far end"])).json();
     assert_eq!(one["parameters"], all["planes"][0]["parameters"]);
-    let text = String::from_utf8(advise(&[]).stdout).unwrap();
-    assert!(
-        text.contains("coupling end struck") && text.contains("\nfar end\n"),
-        "{text}"
+    has(
+        &folder.ran(line).good(),
+        &["coupling end struck", "\nfar end\n"],
     );
 }
 
 /// A slender shaft gives way by more than a magnet pulls: what pulls outwards stays what it is.
 #[test]
 fn negative_stiffness_is_not_turned_by_a_soft_shaft() {
-    let text = TWO_PLANES
-        .replace(
-            "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.0\n",
-            "bending_to_hz = 0.0\n",
-        )
-        .replace("position_m = -0.2", "position_m = 0.3")
-        .replace(
-            "position_m = 0.3\ncontact_radius_m = 0.03",
-            "position_m = 0.7\ncontact_radius_m = 0.03",
-        )
-        + "[[shaft]]\nlength_m = 1.0\nouter_diameter_m = 0.02\n[magnet]\nforce_max_n = 100.0\nnegative_stiffness_n_m = 5e6\n";
-    let scene = machine(&text);
-    let pulls: Vec<f64> = scene
-        .machine
-        .supports
-        .iter()
-        .map(|s| s.stiffness_n_m.x)
-        .collect();
-    assert_eq!(pulls, [-5e6; 2]);
+    let edits = [
+        (INERTIAS, "bending_to_hz = 0.0\n"),
+        ("position_m = 0.3\n", "position_m = 0.7\n"),
+        ("position_m = -0.2", "position_m = 0.3"),
+    ];
+    let more = "[[shaft]]\nlength_m = 1.0\nouter_diameter_m = 0.02\n[magnet]\nforce_max_n = 100.0\nnegative_stiffness_n_m = 5e6\n";
+    let scene = machine(&(edited(TWO_PLANES, &edits) + more));
+    let pulls = scene.machine.supports.iter().map(|s| s.stiffness_n_m.x);
+    assert_eq!(pulls.collect::<Vec<f64>>(), [-5e6; 2]);
 }

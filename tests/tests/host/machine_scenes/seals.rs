@@ -6,29 +6,23 @@ use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use serde_json::Value;
-use std::fs;
-use system_tests::{machine_scene_path, run_scene};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, edited, has, lacks, list, number};
 
 /// One supervisor over two bearings, by gains of each plane.
 fn supervised() -> String {
-    let by_mode = LEVITATED
-        .replace(
-            "policies = [\"levitation\"]",
-            "policies = [\"levitation\", \"supervisor\"]",
-        )
-        .replace("duration_s = 0.4", "duration_s = 0.08")
-        .replace("coefficient = 0.15", "coefficient = 0.05")
-        .replace(
-            "proportional_n_m = 1.4e6\nintegral_n_m_s = 4e6",
-            "proportional_n_m = 7e5",
-        );
+    let both = "policies = [\"levitation\", \"supervisor\"]";
+    let gains = "proportional_n_m = 1.4e6\nintegral_n_m_s = 4e6";
+    let edits = [
+        ("policies = [\"levitation\"]", both),
+        ("duration_s = 0.4", "duration_s = 0.08"),
+        ("coefficient = 0.15", "coefficient = 0.05"),
+        (gains, "proportional_n_m = 7e5"),
+    ];
+    let by_mode = edited(LEVITATED, &edits);
     let (head, rest) = by_mode.split_once("[levitation.tilt]").unwrap();
     let (_, of_planes) = rest.split_once("[[plane]]").unwrap();
-    head.to_owned()
-        + "[[disturbance]]\nstart_s = 0.01\nduration_s = 0.003\nforce_n = [2500.0, 600.0]\nposition_m = 0.1\n[[plane]]"
-        + of_planes
+    let load = "[[disturbance]]\nstart_s = 0.01\nduration_s = 0.003\nforce_n = [2500.0, 600.0]\nposition_m = 0.1\n";
+    format!("{head}{load}[[plane]]{of_planes}")
 }
 
 /// With a seal before the first plane.
@@ -96,58 +90,46 @@ fn who_levitates_does_not_know_of_a_seal() {
 fn a_seal_that_is_touched_is_judged() {
     let scene = machine(&with_seal(&supervised(), 0.1, 1e-4));
     // From what the magnets do there: 1000 N at each end, and the force of an impact is no weaker in between.
-    let limits = scene.planes.iter().map(|plane| plane.whirl_speed_m_s);
-    assert!(limits.clone().all(|limit| (0.1..1.0).contains(&limit)));
-    let touched = |kind| {
-        let ended = planes(&scene, kind);
-        let figures: Vec<Figures> = ended.iter().map(|(figures, _)| figures.clone()).collect();
-        let (seal, whole) = (&figures[0], Figures::of_machine(&figures).unwrap());
-        assert!(seal.impacts > 0 && seal.contact_impulse_n_s > 0.0);
-        assert_eq!(
-            whole.impacts,
-            figures.iter().map(|f| f.impacts).sum::<u64>()
-        );
-        assert!(whole.outcome >= seal.outcome);
-        assert!(whole.energy_residual < 1e-8);
-        let outcome =
-            |(_, trace): &(Figures, Trace)| (trace.rows.iter()).any(|row| row.supervisor.is_some());
-        let supervised = kind == PolicyKind::Supervisor;
-        assert_eq!(
-            ended.iter().map(outcome).collect::<Vec<_>>(),
-            [false, supervised, supervised]
-        );
-        let forces = ended[0].1.rows.iter().map(|row| row.commanded_n.norm());
-        assert_eq!(forces.fold(0.0, f64::max), 0.0);
-    };
+    let mut limits = scene.planes.iter().map(|plane| plane.whirl_speed_m_s);
+    assert!(limits.all(|limit| (0.1..1.0).contains(&limit)));
     for kind in [
         PolicyKind::Passive,
         PolicyKind::Levitation,
         PolicyKind::Supervisor,
     ] {
-        touched(kind);
+        let ended = planes(&scene, kind);
+        let figures: Vec<Figures> = ended.iter().map(|(figures, _)| figures.clone()).collect();
+        let (seal, whole) = (&figures[0], Figures::of_machine(&figures).unwrap());
+        assert!(seal.impacts > 0 && seal.contact_impulse_n_s > 0.0);
+        let impacts = figures.iter().map(|f| f.impacts);
+        assert_eq!(whole.impacts, impacts.sum::<u64>());
+        assert!(whole.outcome >= seal.outcome);
+        assert!(whole.energy_residual < 1e-8);
+        let supervised = kind == PolicyKind::Supervisor;
+        for ((_, trace), said) in ended.iter().zip([false, supervised, supervised]) {
+            assert_eq!(trace.rows.iter().any(|row| row.supervisor.is_some()), said);
+        }
+        let forces = ended[0].1.rows.iter().map(|row| row.commanded_n.norm());
+        assert_eq!(forces.fold(0.0, f64::max), 0.0);
     }
 }
 
 /// Verdict, page, traces and records of a scene with a seal.
 #[test]
 fn what_is_written_has_the_seal() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    let scene = machine_scene_path("blade_lost_over_a_seal");
-    let result = run_scene(&scene, &out, &["--json"]);
-    let errors = String::from_utf8_lossy(&result.stderr);
-    assert!(result.status.success(), "{errors}");
-    let verdict: Value = serde_json::from_slice(&result.stdout).unwrap();
+    let folder = Folder::fresh();
+    let line = "run @machines/blade_lost_over_a_seal --out out --json";
+    let verdict = folder.ran(line).json();
     let plane = |policy: &str, name: &str| {
-        let planes = verdict["policies"][policy]["planes"].as_array().unwrap();
-        planes.iter().find(|p| p["name"] == name).unwrap().clone()
+        let mut planes = list(&verdict["policies"][policy]["planes"]).iter();
+        planes.find(|p| p["name"] == name).unwrap().clone()
     };
     let impulse = |policy: &str| {
         let seal = plane(policy, "seal");
         assert_eq!(seal["outcome"], "recovered");
         assert!(seal["impacts"].as_u64().unwrap() > 0 && seal["supervision"].is_null());
         assert!(seal["peak_backward_speed_m_s"].is_number());
-        seal["contact_impulse_n_s"].as_f64().unwrap()
+        number(&seal["contact_impulse_n_s"])
     };
     // As the story has it.
     assert!(impulse("supervisor") < 0.25 * impulse("levitation"));
@@ -157,21 +139,11 @@ fn what_is_written_has_the_seal() {
         }
         assert!(plane("supervisor", bearing)["supervision"].is_object());
     }
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
-    for says in [
-        "Plane: seal",
-        "seal (seal) at 100 mm",
-        "800 g mm of unbalance more",
-        "115 N m",
-    ] {
-        assert!(page.contains(says), "{says}");
-    }
-    assert!(out.join("trace_supervisor_seal.parquet").exists());
-    let records = fs::read_dir(&out).unwrap();
-    let of_seal = records.filter(|entry| {
-        let name = entry.as_ref().unwrap().file_name();
-        let name = name.to_string_lossy();
-        name.ends_with(".bin") && name.contains("seal")
-    });
-    assert_eq!(of_seal.count(), 0);
+    let page = folder.text("out/report.html");
+    has(&page, &["Plane: seal", "seal (seal) at 100 mm"]);
+    has(&page, &["800 g mm of unbalance more", "115 N m"]);
+    let mut of_seal = folder.names("out");
+    of_seal.retain(|name| name.contains("seal"));
+    assert!(of_seal.contains(&"trace_supervisor_seal.parquet".to_owned()));
+    lacks(&of_seal.join(" "), &[".bin"]);
 }

@@ -1,6 +1,6 @@
 //! Records of sensors that lie and of files that are damaged, against what the plant did: no sentence says more than it knows.
 
-use super::{damage::sections, review};
+use super::damage::sections;
 use firmware_bench::record::file::{PlaneRecord, RecordFile};
 use firmware_bench::record::narrative::{Event, Narrative, Verdict};
 use firmware_bench::record::ticks::Ticks;
@@ -12,7 +12,7 @@ use firmware_bench::scene::policy_kind::PolicyKind;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use supervisor::{Limits, Mode, Part};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, has, list};
 
 const RATE_HZ: f64 = 20_000.0;
 const CLEARANCE_M: f64 = 2e-4;
@@ -572,22 +572,16 @@ fn damage_makes_nothing_known() {
 /// The first sentence says it to a person, null to a program, and damage comes before all of it.
 #[test]
 fn a_person_and_a_program_read_what_is_not_known() {
-    let folder = TempDir::new().unwrap();
-    let file = folder.path().join("never.bin");
+    let folder = Folder::fresh();
     let lied = ran(MACHINE, OVERLOAD, Some((FAULTS[0], TIMES_S[3]))).unwrap();
-    std::fs::write(&file, &lied.bytes).unwrap();
-    let text = String::from_utf8(review(&file, &[]).stdout).unwrap();
+    folder.put("never.bin", &lied.bytes);
+    let text = folder.ran("review never.bin").printed;
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        words.starts_with(
-            "Position unknown throughout the event, because the reading was not a number; whether it touched or whirled is not known."
-        ),
-        "{text}"
-    );
+    let first = "Position unknown throughout the event, because the reading was not a number; whether it touched or whirled is not known.";
+    assert!(words.starts_with(first), "{text}");
     let (_, track) = words.split_once("to the end of the event:").unwrap();
-    assert!(track.contains("not known"), "{text}");
-    let json: serde_json::Value =
-        serde_json::from_slice(&review(&file, &["--json"]).stdout).unwrap();
+    has(track, &["not known"]);
+    let json = folder.ran("review never.bin --json").json();
     for name in [
         "touches",
         "contact_s",
@@ -597,11 +591,10 @@ fn a_person_and_a_program_read_what_is_not_known() {
         "whirled",
         "severity",
     ] {
-        assert_eq!(json["summary"][name], serde_json::Value::Null, "{name}");
+        assert!(json["summary"][name].is_null(), "{name}");
     }
-    let unknown = json["planes"][0]["unknown"].as_array().unwrap();
-    let [only] = &unknown[..] else {
-        panic!("{unknown:?}")
+    let [only] = list(&json["planes"][0]["unknown"]) else {
+        panic!("{json}")
     };
     assert_eq!(only["reason"], "not_a_number");
     assert_eq!(only["from_s"], 0.0);
@@ -610,9 +603,8 @@ fn a_person_and_a_program_read_what_is_not_known() {
     let [.., (_, flipped), _] = &damages(&lied.bytes)[..] else {
         panic!()
     };
-    std::fs::write(&file, flipped).unwrap();
-    let shown = review(&file, &[]);
-    assert_eq!(shown.status.code(), Some(2));
-    let text = String::from_utf8(shown.stdout).unwrap();
-    assert!(text.starts_with("The file is damaged: "), "{text}");
+    folder.put("never.bin", flipped);
+    let shown = folder.ran("review never.bin");
+    assert_eq!(shown.code, Some(2));
+    assert!(shown.printed.starts_with("The file is damaged: "));
 }

@@ -2,37 +2,29 @@
 //! lack said.
 
 use serde_json::Value;
-use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
-use system_tests::{host, machine_scene_path, python, run_scene, scene_path};
-use tempfile::TempDir;
+use std::process::Command;
+use system_tests::python;
+use system_tests::ran::{Folder, Ran, flat, has, lacks, list, number, ran};
 
-fn review(log: &Path, scene: &Path, more: &[&str]) -> Output {
-    let mut review = host();
-    review
-        .arg("review")
-        .arg(log)
-        .arg("--scene")
-        .arg(scene)
-        .args(more);
-    review.output().unwrap()
+fn review(folder: &Folder, log: &str, more: &str) -> Ran {
+    folder.ran(&format!(
+        "review {log} --scene @overload_then_release {more}"
+    ))
 }
 
-fn json(log: &Path, scene: &Path, more: &[&str]) -> Value {
-    let output = review(log, scene, &[&["--json"], more].concat());
-    let shown = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{}: {shown}", log.display());
-    serde_json::from_slice(&output.stdout).unwrap()
+fn json(folder: &Folder, log: &str, more: &str) -> Value {
+    review(folder, log, &format!("--json {more}")).json()
 }
 
-fn export(trace: &Path, format: &str) {
-    let export = host()
-        .arg("export")
-        .arg(trace)
-        .args(["--to", format])
-        .output();
-    assert!(export.unwrap().status.success());
+/// That scene, run, and its trace in these formats too.
+fn exported(formats: &[&str]) -> Folder {
+    let folder = Folder::fresh();
+    folder.ran("run @overload_then_release --out .").good();
+    for format in formats {
+        let line = format!("export trace_supervisor.parquet --to {format}");
+        folder.ran(&line).good();
+    }
+    folder
 }
 
 /// Columns of a trace under other names, in micrometres and milliseconds, between semicolons.
@@ -59,112 +51,73 @@ pub(crate) fn foreign(csv: &str, force: bool) -> String {
     out
 }
 
-const NAMES: [&str; 6] = [
-    "--column",
-    "t_s=ms*1e-3",
-    "--column",
-    "measured_x_m=x1*1e-6",
-    "--column",
-    "measured_y_m=y1*1e-6",
-];
-const FORCES: [&str; 4] = [
-    "--column",
-    "commanded_x_n=fx",
-    "--column",
-    "commanded_y_n=fy",
-];
+const NAMES: &str =
+    "--column t_s=ms*1e-3 --column measured_x_m=x1*1e-6 --column measured_y_m=y1*1e-6";
+const FORCES: &str = "--column commanded_x_n=fx --column commanded_y_n=fy";
 
 #[test]
 fn a_log_shows_the_event_that_the_record_has() {
-    let folder = TempDir::new().unwrap();
-    let (scene, out) = (scene_path("overload_then_release"), folder.path());
-    assert!(run_scene(&scene, out, &[]).status.success());
-    let trace = out.join("trace_supervisor.parquet");
-    ["csv", "mcap"]
-        .iter()
-        .for_each(|format| export(&trace, format));
-    let record = json(&out.join("record_supervisor.bin"), &scene, &[]);
+    let folder = exported(&["csv", "mcap"]);
+    let record = json(&folder, "record_supervisor.bin", "");
     assert!(record["log"].is_null());
-    let own = json(&trace, &scene, &[]);
-    let (watched, seen) = (&own["summary"], &record["summary"]);
-    assert_eq!(
-        (&watched["outcome"], &watched["touches"]),
-        (&seen["outcome"], &seen["touches"])
-    );
+    let own = json(&folder, "trace_supervisor.parquet", "");
+    let (told, seen) = (&own["summary"], &record["summary"]);
+    for same in ["outcome", "touches"] {
+        assert_eq!(told[same], seen[same]);
+    }
     for figure in ["hardest_impact_m_s", "contact_s", "severity"] {
-        let (a, b) = (
-            watched[figure].as_f64().unwrap(),
-            seen[figure].as_f64().unwrap(),
-        );
+        let (a, b) = (number(&told[figure]), number(&seen[figure]));
         assert!((a / b - 1.0).abs() < 0.05, "{figure}: {a}, recorded {b}");
     }
     let log = &own["log"];
-    assert_eq!(log["events"].as_array().unwrap().len(), 1);
-    let begins_s = log["events"][0]["from_s"].as_f64().unwrap();
+    assert_eq!(list(&log["events"]).len(), 1);
+    let begins_s = number(&log["events"][0]["from_s"]);
     assert!((0.02..0.022).contains(&begins_s), "{begins_s}");
     assert!(log["has_force"] == true && log["has_spin"] == true);
 
     // In other formats, to the bit; and as another program would have written it.
     for format in ["csv", "mcap"] {
-        let other = json(&trace.with_extension(format), &scene, &[]);
+        let other = json(&folder, &format!("trace_supervisor.{format}"), "");
         assert_eq!(other["summary"], own["summary"], "{format}");
     }
-    let csv = fs::read_to_string(trace.with_extension("csv")).unwrap();
-    let written = out.join("foreign.csv");
-    fs::write(&written, foreign(&csv, true)).unwrap();
-    let columns = [&NAMES[..], &FORCES].concat();
-    let other = json(&written, &scene, &columns);
-    assert_eq!(other["summary"]["touches"], watched["touches"]);
+    let csv = folder.text("trace_supervisor.csv");
+    let written = folder.put("foreign.csv", foreign(&csv, true));
+    let columns = format!("{NAMES} {FORCES}");
+    let other = json(&folder, "foreign.csv", &columns);
+    assert_eq!(other["summary"]["touches"], told["touches"]);
     assert!(other["log"]["has_spin"] == false && other["log"]["has_force"] == true);
     if let Some(python) = python() {
-        let mat = out.join("foreign.mat");
         let convert = |all: &str| {
             let script = format!(
                 "import sys, pandas, scipy.io\n\
                  d = pandas.read_csv(sys.argv[1], sep=';')\n\
                  scipy.io.savemat(sys.argv[2], {{c: {all} for c in d}}, do_compression=True)"
             );
-            let mut python = Command::new(&python);
-            let done = python.arg("-c").arg(script).args([&written, &mat]).output();
-            let done = done.unwrap();
-            let shown = String::from_utf8_lossy(&done.stderr);
-            assert!(done.status.success(), "{shown}");
+            let files = [&written, &folder.at("foreign.mat")];
+            ran(Command::new(&python).args(["-c", &script]).args(files)).good();
         };
         convert("d[c].to_numpy()");
-        assert_eq!(json(&mat, &scene, &columns)["summary"], other["summary"]);
+        let of_matlab = json(&folder, "foreign.mat", &columns);
+        assert_eq!(of_matlab["summary"], other["summary"]);
         // Vectors of a file need not be of one log.
         convert("d[c].to_numpy()[3 * (c == 'fy'):]");
-        let refused = review(&mat, &scene, &columns);
-        let shown = String::from_utf8_lossy(&refused.stderr);
-        assert!(
-            refused.status.code() == Some(2) && shown.contains("rows and t_s"),
-            "{shown}"
-        );
+        let said = review(&folder, "foreign.mat", &columns).fails(2);
+        has(&said, &["rows and t_s"]);
     }
 
     // Without forces, which is said; what is read as a touch stays one.
-    fs::write(&written, foreign(&csv, false)).unwrap();
-    let without = review(&written, &scene, &NAMES);
-    let shown = String::from_utf8_lossy(&without.stdout);
-    assert!(
-        shown.contains("no force") && shown.contains("touches"),
-        "{shown}"
-    );
-    assert!(!shown.contains("Replayed"), "{shown}");
+    folder.put("foreign.csv", foreign(&csv, false));
+    let said = review(&folder, "foreign.csv", NAMES).good();
+    has(&said, &["no force", "touches"]);
+    lacks(&said, &["Replayed"]);
 }
 
 #[test]
 fn gaps_of_a_log_are_positions_that_are_unknown() {
-    let folder = TempDir::new().unwrap();
-    let (scene, out) = (scene_path("overload_then_release"), folder.path());
-    assert!(run_scene(&scene, out, &[]).status.success());
-    let trace = out.join("trace_supervisor.parquet");
-    export(&trace, "csv");
-    let text = foreign(
-        &fs::read_to_string(trace.with_extension("csv")).unwrap(),
-        true,
-    );
-    let columns = [&NAMES[..], &FORCES].concat();
+    let folder = exported(&["csv"]);
+    let text = foreign(&folder.text("trace_supervisor.csv"), true);
+    let columns = format!("{NAMES} {FORCES}");
+    let put = |rows: &[String]| folder.put("log.csv", rows.join("\n") + "\n");
     // Row 430 is 21.5 ms.
     let rows: Vec<String> = (text.lines().enumerate())
         .filter(|(i, _)| !(460..480).contains(i))
@@ -176,168 +129,120 @@ fn gaps_of_a_log_are_positions_that_are_unknown() {
             false => line.to_owned(),
         })
         .collect();
-    let log = out.join("gaps.csv");
-    fs::write(&log, rows.join("\n") + "\n").unwrap();
-    let of = json(&log, &scene, &columns);
-    let unknown = of["planes"][0]["unknown"].as_array().unwrap();
-    let reasons: Vec<&str> = unknown
-        .iter()
-        .map(|u| u["reason"].as_str().unwrap())
-        .collect();
-    assert!(
-        reasons.contains(&"not_a_number") && reasons.contains(&"missed_ticks"),
-        "{reasons:?}"
-    );
+    put(&rows);
+    let of = json(&folder, "log.csv", &columns);
+    let unknown = list(&of["planes"][0]["unknown"]).iter();
+    let reasons: Vec<&str> = unknown.map(|u| u["reason"].as_str().unwrap()).collect();
+    has(&reasons.join(" "), &["not_a_number", "missed_ticks"]);
 
     // Cut within the event: that it is not over is said, and it is not taken for one that ended well.
-    let cut: Vec<&str> = text.lines().take(600).collect();
-    fs::write(&log, cut.join("\n") + "\n").unwrap();
-    let output = review(&log, &scene, &columns);
-    let shown = String::from_utf8_lossy(&output.stdout);
-    assert!(shown.contains("where it is not over"), "{shown}");
-    assert!(shown.contains("the log ends before it was over"), "{shown}");
-    assert!(!shown.contains("Nothing speaks against"), "{shown}");
+    let first = |rows: usize| -> Vec<String> { text.lines().take(rows).map(Into::into).collect() };
+    put(&first(600));
+    let said = review(&folder, "log.csv", &columns).printed;
+    has(
+        &said,
+        &["where it is not over", "the log ends before it was over"],
+    );
+    lacks(&said, &["Nothing speaks against"]);
 
     // Before the event there is none.
-    let quiet: Vec<&str> = text.lines().take(300).collect();
-    fs::write(&log, quiet.join("\n") + "\n").unwrap();
-    let of = json(&log, &scene, &columns);
-    assert!(of["log"]["events"].as_array().unwrap().is_empty() && of["summary"].is_null());
+    put(&first(300));
+    let of = json(&folder, "log.csv", &columns);
+    assert!(list(&of["log"]["events"]).is_empty() && of["summary"].is_null());
 }
 
 #[test]
 fn both_planes_of_a_rotor_are_watched_together() {
-    let folder = TempDir::new().unwrap();
-    let (scene, out) = (
-        machine_scene_path("overload_of_a_flexible_rotor"),
-        folder.path(),
-    );
-    let ran = run_scene(&scene, out, &[]);
-    assert!(
-        ran.status.success(),
-        "{}",
-        String::from_utf8_lossy(&ran.stderr)
-    );
-    let of = firmware_bench::scene::Scene::load(&scene).unwrap();
+    let folder = Folder::fresh();
+    let scene = "@machines/overload_of_a_flexible_rotor";
+    folder.ran(&format!("run {scene} --out .")).good();
+    let json = |log: &str| {
+        folder
+            .ran(&format!("review {log} --scene {scene} --json"))
+            .json()
+    };
     let mut tables: Vec<Vec<String>> = Vec::new();
     let mut records = Vec::new();
-    for plane in &of.planes {
-        let name = plane.name.replace(' ', "_");
-        records.extend(fs::read(out.join(format!("record_supervisor_{name}.bin"))).unwrap());
-        let trace = out.join(format!("trace_supervisor_{name}.parquet"));
-        export(&trace, "csv");
-        let text = fs::read_to_string(trace.with_extension("csv")).unwrap();
+    for plane in ["far end", "coupling end"] {
+        let name = plane.replace(' ', "_");
+        records.extend(folder.bytes(&format!("record_supervisor_{name}.bin")));
+        let trace = format!("trace_supervisor_{name}");
+        folder
+            .ran(&format!("export {trace}.parquet --to csv"))
+            .good();
+        let text = folder.text(&format!("{trace}.csv"));
         let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
         let names: Vec<String> = (lines[0].split(','))
             .map(|name| match name {
                 "t_s" | "spin_rad_s" | "mode_change" if tables.is_empty() => name.to_owned(),
-                name => format!("{}.{name}", plane.name),
+                name => format!("{plane}.{name}"),
             })
             .collect();
         lines[0] = names.join(",");
+        // Rows between ticks are of one plane alone.
+        lines.retain(|line| !line.contains("true"));
         tables.push(lines);
     }
-    fs::write(out.join("record.bin"), records).unwrap();
-    let record = json(&out.join("record.bin"), &scene, &[]);
-    // Rows between ticks are of one plane alone.
-    let ticks = |lines: &[String]| -> Vec<String> {
-        (lines.iter())
-            .filter(|line| !line.contains("true"))
-            .cloned()
-            .collect()
-    };
-    let [a, b] = [ticks(&tables[0]), ticks(&tables[1])];
-    let rows: Vec<String> = a.iter().zip(&b).map(|(a, b)| format!("{a},{b}")).collect();
-    let log = out.join("both.csv");
-    fs::write(&log, rows.join("\n") + "\n").unwrap();
-    let both = json(&log, &scene, &[]);
-    assert_eq!(both["planes"].as_array().unwrap().len(), 2);
-    assert_eq!(both["summary"]["outcome"], record["summary"]["outcome"]);
-    let touches = |of: &Value| of["summary"]["touches"].as_f64().unwrap();
-    assert_eq!(touches(&both), touches(&record));
+    folder.put("record.bin", records);
+    let record = json("record.bin");
+    let rows = tables[0].iter().zip(&tables[1]);
+    let rows: String = rows.map(|(a, b)| format!("{a},{b}\n")).collect();
+    folder.put("both.csv", rows);
+    let both = json("both.csv");
+    assert_eq!(list(&both["planes"]).len(), 2);
+    for same in ["outcome", "touches"] {
+        assert_eq!(both["summary"][same], record["summary"][same]);
+    }
+    assert!(both["summary"]["touches"].is_number());
 }
 
 #[test]
 fn what_a_log_lacks_is_named() {
-    let folder = TempDir::new().unwrap();
-    let log = folder.path().join("log.csv");
-    fs::write(&log, "t_s,x\n0,0\n5e-5,0\n1e-4,0\n").unwrap();
-    let scene = scene_path("overload_then_release");
-    let output = host().arg("review").arg(&log).output().unwrap();
-    let shown = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(
-        output.status.code() == Some(2) && shown.contains("--scene"),
-        "{shown}"
-    );
-    let output = review(&log, &scene, &[]);
-    let shown = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2));
-    for part in ["measured_x_m", "log.csv", "t_s, x", "--column"] {
-        assert!(shown.contains(part), "{part}: {shown}");
-    }
+    let folder = Folder::fresh();
+    folder.put("log.csv", "t_s,x\n0,0\n5e-5,0\n1e-4,0\n");
+    has(&folder.ran("review log.csv").fails(2), &["--scene"]);
+    let said = review(&folder, "log.csv", "").fails(2);
+    has(&said, &["measured_x_m", "log.csv", "t_s, x", "--column"]);
     // In milliseconds and micrometres that nobody turned.
-    let rows: Vec<String> = (0..200)
-        .map(|i| format!("{},{i},0\n", 0.05 * f64::from(i)))
-        .collect();
-    fs::write(
-        &log,
-        format!("t_s,measured_x_m,measured_y_m\n{}", rows.concat()),
-    )
-    .unwrap();
-    let output = review(&log, &scene, &[]);
-    let shown = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(
-        output.status.code() == Some(2) && shown.contains("t_s*1e-3"),
-        "{shown}"
-    );
-    let output = review(&log, &scene, &["--column", "t_s=t_s*1e-3"]);
-    let shown = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(
-        output.status.success() && shown.contains("No rotor goes so far"),
-        "{shown}"
-    );
+    let row = |i: i32| format!("{},{i},0\n", 0.05 * f64::from(i));
+    let rows: String = (0..200).map(row).collect();
+    folder.put("log.csv", format!("t_s,measured_x_m,measured_y_m\n{rows}"));
+    has(&review(&folder, "log.csv", "").fails(2), &["t_s*1e-3"]);
+    let said = review(&folder, "log.csv", "--column t_s=t_s*1e-3").good();
+    has(&said, &["No rotor goes so far"]);
 }
 
 /// A reading that is no length, a plane without one, a spin without one, and a mapping that nobody uses.
 #[test]
 fn what_is_no_number_of_a_machine_is_said() {
-    let folder = TempDir::new().unwrap();
-    let log = folder.path().join("log.csv");
-    let scene = scene_path("overload_then_release");
-    let of = |x: &dyn Fn(i32) -> &'static str, more: &[&str]| {
-        let rows: String = (0..200)
-            .map(|i| format!("{:.6},{},{},\n", 1e3 + 5e-5 * f64::from(i), x(i), x(i)))
-            .collect();
+    let folder = Folder::fresh();
+    let of = |x: &dyn Fn(i32) -> &'static str, more: &str| {
+        let row = |i| format!("{:.6},{},{},\n", 1e3 + 5e-5 * f64::from(i), x(i), x(i));
+        let rows: String = (0..200).map(row).collect();
         let head = "t_s,measured_x_m,measured_y_m,spin_rad_s\n";
-        fs::write(&log, format!("{head}{rows}")).unwrap();
-        let output = review(&log, &scene, more);
-        let shown = [&output.stdout[..], &output.stderr].concat();
-        let shown = String::from_utf8(shown).unwrap();
-        let words: Vec<&str> = shown.split_whitespace().collect();
-        (output.status.code(), words.join(" "))
+        folder.put("log.csv", format!("{head}{rows}"));
+        let Ran {
+            code,
+            printed,
+            said,
+        } = review(&folder, "log.csv", more);
+        (code, flat(&(printed + &said)))
     };
     let far = |i| if i == 7 { "1e300" } else { "1e-5" };
-    let (code, shown) = of(&far, &[]);
-    assert_eq!(code, Some(0), "{shown}");
-    for part in [
-        "count as unknown: 2.",
-        "0.0",
-        "spin_rad_s has no number",
-        "the scene's is taken",
-    ] {
-        assert!(shown.contains(part), "{part}: {shown}");
-    }
-    assert!(!shown.contains("00000000"), "{shown}");
-    let (code, shown) = of(&|_| "nan", &[]);
-    assert!(
-        code == Some(0) && shown.contains("no position is a number"),
-        "{shown}"
+    let (code, said) = of(&far, "");
+    assert_eq!(code, Some(0), "{said}");
+    has(
+        &said,
+        &["count as unknown: 2.", "0.0", "spin_rad_s has no number"],
     );
+    has(&said, &["the scene's is taken"]);
+    lacks(&said, &["00000000"]);
+    let (code, said) = of(&|_| "nan", "");
+    assert_eq!(code, Some(0), "{said}");
+    has(&said, &["no position is a number"]);
     for mapping in ["foo=t_s", "stimulus_x_n=t_s", "t_s=nope"] {
-        let (code, shown) = of(&|_| "0", &["--column", mapping]);
-        assert!(
-            code == Some(2) && shown.contains("--column"),
-            "{mapping}: {shown}"
-        );
+        let (code, said) = of(&|_| "0", &format!("--column {mapping}"));
+        assert_eq!(code, Some(2), "{mapping}: {said}");
+        has(&said, &["--column"]);
     }
 }

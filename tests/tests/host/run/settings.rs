@@ -1,24 +1,17 @@
 //! `run --set` and `run --seed`.
 
-use super::{short_scene, stripped};
-use parquet::file::reader::{FileReader, SerializedFileReader};
-use std::fs;
-use std::path::Path;
-use system_tests::run_scene;
-use tempfile::TempDir;
+use super::{short, short_scene, stripped};
+use crate::run::traces::parquet_rows;
+use system_tests::ran::{Folder, edited, ran};
 
 /// What a run has left, of traces their rows.
-fn results(out: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut all = stripped(out);
+fn results(folder: &Folder, out: &str) -> Vec<(String, Vec<u8>)> {
+    let mut all = stripped(folder, out);
     for (name, bytes) in &mut all {
         if name.ends_with(".parquet") {
-            let file = fs::File::open(out.join(name)).unwrap();
-            let reader = SerializedFileReader::new(file).unwrap();
-            let rows = reader.get_row_iter(None).unwrap();
-            *bytes = rows
-                .map(|row| format!("{}\n", row.unwrap()))
-                .collect::<String>()
-                .into_bytes();
+            let rows = parquet_rows(&folder.at(&format!("{out}/{name}")));
+            let rows = rows.iter().map(|row| format!("{row}\n"));
+            *bytes = rows.collect::<String>().into_bytes();
         }
     }
     all
@@ -26,36 +19,21 @@ fn results(out: &Path) -> Vec<(String, Vec<u8>)> {
 
 #[test]
 fn a_value_that_is_set_is_as_one_that_is_written() {
-    let folder = TempDir::new().unwrap();
-    let out = |name: &str| folder.path().join(name);
-    let edited = short_scene(folder.path(), |text| {
-        text.replace("coefficient = 0.15", "coefficient = 0.3")
-            .replace("seed = 1", "seed = 9")
-            .replace("force_n = [1300.0, 750.0]", "force_n = [1300.0, 100.0]")
-            + "\n[supervisor]\nhold_share = 0.5\n"
-    });
-    assert!(run_scene(&edited, &out("edited"), &[]).status.success());
-    let plain = short_scene(folder.path(), |text| text);
-    let before = fs::read(&plain).unwrap();
-    let settings = [
-        "--set",
-        "friction.coefficient=0.3",
-        "--set",
-        "supervisor.hold_share = 0.5",
-        "--set",
-        "disturbance[0].force_n[1]=100",
-        "--seed",
-        "9",
+    let folder = short_scene(&[]);
+    let edits = [
+        ("coefficient = 0.15", "coefficient = 0.3"),
+        ("seed = 1", "seed = 9"),
+        ("force_n = [1300.0, 750.0]", "force_n = [1300.0, 100.0]"),
     ];
-    let set = run_scene(&plain, &out("set"), &settings);
-    assert!(
-        set.status.success(),
-        "{}",
-        String::from_utf8_lossy(&set.stderr)
-    );
+    let written = edited(&short(), &edits) + "\n[supervisor]\nhold_share = 0.5\n";
+    folder.put("edited.toml", written);
+    folder.ran("run edited.toml --out edited").good();
+    let settings = "--set friction.coefficient=0.3 --set disturbance[0].force_n[1]=100 --seed 9";
+    let mut set = folder.command(&format!("run short.toml --out set {settings}"));
+    ran(set.args(["--set", "supervisor.hold_share = 0.5"])).good();
     // Not assert_eq: a failure would print megabytes. Traces say which settings they are of.
-    assert!(results(&out("edited")) == results(&out("set")));
-    assert_eq!(fs::read(&plain).unwrap(), before);
-    assert!(run_scene(&plain, &out("plain"), &[]).status.success());
-    assert!(results(&out("plain")) != results(&out("set")));
+    assert!(results(&folder, "edited") == results(&folder, "set"));
+    assert_eq!(folder.text("short.toml"), short());
+    folder.ran("run short.toml --out plain").good();
+    assert!(results(&folder, "plain") != results(&folder, "set"));
 }

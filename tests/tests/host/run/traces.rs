@@ -1,6 +1,6 @@
 //! What is in the traces, and what the supervisor left behind.
 
-use super::{names, short_scene};
+use super::{RUN, short, short_scene};
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::record::ticks::Ticks;
 use firmware_bench::run::closed_loop::{Keep, run};
@@ -10,12 +10,11 @@ use firmware_bench::run::trace_file::TraceFile;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row, RowAccessor};
-use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use system_tests::{root, run_scene, scene_path};
-use tempfile::TempDir;
+use system_tests::ran::{Folder, edited, has, lacks};
+use system_tests::root;
 
 /// A long run is written group by group, and every row is there, in its order.
 #[test]
@@ -23,35 +22,24 @@ fn a_long_trace_has_several_groups() {
     let scene = system_tests::scene("impact_at_40_hz");
     let (_, trace) = run(&scene, PolicyKind::Passive, Keep::Trace, &mut |_| {}).unwrap();
     let rows = || trace.rows.iter().cycle().take(70_000);
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("trace.parquet");
+    let folder = Folder::fresh();
+    let path = folder.at("trace.parquet");
     let mut file = TraceFile::new(fs::File::create(&path).unwrap(), Columns::of_plane()).unwrap();
     rows().for_each(|row| file.row(row));
     file.end().unwrap();
-    let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();
+    let reader = SerializedFileReader::new(fs::File::open(&path).unwrap()).unwrap();
     assert_eq!(reader.num_row_groups(), 2);
-    let read = reader.get_row_iter(None).unwrap();
-    let times: Vec<f64> = read
-        .map(|row| row.unwrap().get_double(0).unwrap())
-        .collect();
-    assert!(times.into_iter().eq(rows().map(|row| row.plant.t_s)));
+    let read = parquet_rows(&path);
+    let times = read.iter().map(|row| row.get_double(0).unwrap());
+    assert!(times.eq(rows().map(|row| row.plant.t_s)));
 }
 
 #[test]
 fn traces_hold_every_sample_and_every_mode_change() {
-    let folder = TempDir::new().unwrap();
-    let scene = short_scene(folder.path(), |t| t);
-    let out = folder.path().join("out");
-    assert!(run_scene(&scene, &out, &[]).status.success());
-    let reader =
-        SerializedFileReader::new(fs::File::open(out.join("trace_supervisor.parquet")).unwrap())
-            .unwrap();
-    let schema = reader.metadata().file_metadata().schema_descr();
-    let columns: Vec<&str> = (0..schema.num_columns())
-        .map(|i| schema.column(i).name().to_owned().leak() as &str)
-        .collect();
+    let folder = short_scene(&[]);
+    folder.ran(RUN).good();
+    let rows = rows_of(&folder, "supervisor");
     for name in [
-        "t_s",
         "rotor_x_m",
         "rotor_vy_m_s",
         "inner_ring_x_m",
@@ -61,35 +49,26 @@ fn traces_hold_every_sample_and_every_mode_change() {
         "contact_force_n",
         "commanded_x_n",
         "delivered_y_n",
-        "mode",
-        "supervisor_mode",
     ] {
-        assert!(columns.contains(&name), "{name}");
+        column(&rows, name, number);
     }
-    let at = |name: &str| columns.iter().position(|c| *c == name).unwrap();
-    let (time, mode, change) = (at("t_s"), at("mode"), at("mode_change"));
+    column(&rows, "supervisor_mode", word);
     let (mut samples, mut changes, mut last) = (0, 0, (-1.0, String::new()));
-    for row in reader.get_row_iter(None).unwrap() {
-        let row = row.unwrap();
-        let (t, m) = (
-            row.get_double(time).unwrap(),
-            row.get_string(mode).unwrap().clone(),
-        );
+    let times = column(&rows, "t_s", number).into_iter();
+    let modes = times.zip(column(&rows, "mode", word));
+    for ((t, m), change) in modes.zip(between(&rows)) {
         assert!(t >= last.0, "time runs backwards at {t}");
-        if row.get_bool(change).unwrap() {
-            changes += 1;
-            assert_ne!(m, last.1, "no change at {t}");
-        } else {
-            samples += 1;
+        match change {
+            true => changes += 1,
+            false => samples += 1,
         }
+        assert!(!change || m != last.1, "no change at {t}");
         last = (t, m);
     }
     assert_eq!(samples, 601, "30 ms at 20 kHz, both ends");
-    let verdict: Value =
-        serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap();
-    let impacts = verdict["policies"]["supervisor"]["impacts"]
-        .as_u64()
-        .unwrap();
+    let verdict = folder.json("out/verdict.json");
+    let impacts = &verdict["policies"]["supervisor"]["impacts"];
+    let impacts = impacts.as_u64().unwrap();
     assert!(
         impacts >= 1 && changes >= impacts,
         "{changes} changes, {impacts} impacts"
@@ -97,30 +76,36 @@ fn traces_hold_every_sample_and_every_mode_change() {
 }
 
 /// The trace of a policy.
-fn rows_of(out: &Path, policy: &str) -> Vec<Row> {
-    let file = fs::File::open(out.join(format!("trace_{policy}.parquet"))).unwrap();
-    let reader = SerializedFileReader::new(file).unwrap();
+fn rows_of(folder: &Folder, policy: &str) -> Vec<Row> {
+    parquet_rows(&folder.at(&format!("out/trace_{policy}.parquet")))
+}
+
+/// All rows of a Parquet file.
+pub(crate) fn parquet_rows(path: &Path) -> Vec<Row> {
+    let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();
     let rows = reader.get_row_iter(None).unwrap();
     rows.map(Result::unwrap).collect()
+}
+
+/// Which rows are none of samples.
+fn between(rows: &[Row]) -> Vec<bool> {
+    column(rows, "mode_change", |f| *f == Field::Bool(true))
+}
+
+/// Of samples alone.
+fn of_samples<T>(of: Vec<T>, between: &[bool]) -> Vec<T> {
+    let all = of.into_iter().zip(between);
+    all.filter(|(_, b)| !**b).map(|(x, _)| x).collect()
 }
 
 /// Without the table the ring is a bushing; with it contact spins the race up, towards the rotor's spin
 /// of 200 Hz, or brakes it towards there.
 #[test]
 fn a_race_spins_with_the_rotor() {
-    let folder = TempDir::new().unwrap();
     let of = |keys: &str| {
-        let scene = short_scene(folder.path(), |t| {
-            t.replace("[friction]", &format!("{keys}\n[friction]"))
-        });
-        let out = folder.path().join("out");
-        let result = run_scene(&scene, &out, &[]);
-        assert!(
-            result.status.success(),
-            "{}",
-            String::from_utf8_lossy(&result.stderr)
-        );
-        let spins = column(&rows_of(&out, "supervisor"), "race_spin_rad_s", number);
+        let folder = short_scene(&[("[friction]", &format!("{keys}\n[friction]"))]);
+        folder.ran(RUN).good();
+        let spins = column(&rows_of(&folder, "supervisor"), "race_spin_rad_s", number);
         spins.last().unwrap() / std::f64::consts::TAU
     };
     assert_eq!(of(""), 0.0);
@@ -160,35 +145,22 @@ fn number(field: &Field) -> f64 {
 /// there, and the report tells it.
 #[test]
 fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    assert!(
-        run_scene(&scene_path("impact_at_40_hz"), &out, &[])
-            .status
-            .success()
-    );
-    let rows = rows_of(&out, "supervisor");
-    let between = column(&rows, "mode_change", |f| *f == Field::Bool(true));
-    let of_samples = |name: &str| -> Vec<String> {
-        let all = column(&rows, name, word).into_iter().zip(&between);
-        all.filter(|(_, b)| !**b).map(|(x, _)| x).collect()
-    };
+    let folder = Folder::fresh();
+    folder.ran("run @impact_at_40_hz --out out").good();
+    let rows = rows_of(&folder, "supervisor");
+    let between = between(&rows);
+    let said = |what: &str| column(&rows, &format!("supervisor_{what}"), word);
     let [modes, limits, events] =
-        ["mode", "limits", "events"].map(|what| of_samples(&format!("supervisor_{what}")));
-    for (events, between) in column(&rows, "supervisor_events", word)
-        .iter()
-        .zip(&between)
-    {
+        ["mode", "limits", "events"].map(|what| of_samples(said(what), &between));
+    for (events, between) in said("events").iter().zip(&between) {
         assert!(!between || events.is_empty(), "{events} twice");
     }
     // The command of a sample takes effect at the next, and the record holds it with the sample.
-    let commanded = column(&rows, "commanded_x_n", number)
-        .into_iter()
-        .zip(&between);
-    let commanded: Vec<f64> = commanded.filter(|(_, b)| !**b).map(|(x, _)| x).collect();
+    let [commanded, times] =
+        ["commanded_x_n", "t_s"].map(|name| of_samples(column(&rows, name, number), &between));
 
     let cap_n = 150.0;
-    let bytes = fs::read(out.join("record_supervisor.bin")).unwrap();
+    let bytes = folder.bytes("out/record_supervisor.bin");
     let file = RecordFile::of(&bytes);
     assert!(file.is_intact(), "{:?}", file.damage);
     let record = Ticks::of(&file.records[0]);
@@ -207,56 +179,42 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
         assert!(apart <= 1e-6 * cap_n, "{at}: {apart} N");
     }
 
-    let text = fs::read(out.join("verdict.json")).unwrap();
-    let verdict: Value = serde_json::from_slice(&text).unwrap();
+    let verdict = folder.json("out/verdict.json");
     let supervision = &verdict["policies"]["supervisor"]["supervision"];
     assert!(verdict["policies"]["passive"]["supervision"].is_null());
+    let told = |key: &str| supervision[key].as_f64().unwrap();
     let with = |name: &str| {
-        events
-            .iter()
-            .filter(|e| e.split(' ').any(|e| e == name))
-            .count()
+        let has_it = |e: &&String| e.split(' ').any(|e| e == name);
+        events.iter().filter(has_it).count()
     };
     assert_eq!(supervision["engagements"], with("ENGAGED"));
     // The last row stands at the end of the run: no tick begins there.
-    let engaged = modes[..modes.len() - 1]
-        .iter()
-        .filter(|m| *m != "levitated")
-        .count();
-    let engaged_s = supervision["engaged_s"].as_f64().unwrap();
-    assert!(
-        (engaged_s - engaged as f64 / 20e3).abs() < 1e-9,
-        "{engaged_s}, {engaged}"
-    );
+    let modes = &modes[..modes.len() - 1];
+    let engaged = modes.iter().filter(|m| *m != "levitated").count();
+    let off_s = told("engaged_s") - engaged as f64 / 20e3;
+    assert!(off_s.abs() < 1e-9, "{off_s}, {engaged}");
     let first = events.iter().position(|e| e.contains("ENGAGED")).unwrap();
-    let times: Vec<f64> = (column(&rows, "t_s", number).into_iter().zip(&between))
-        .filter(|(_, b)| !**b)
-        .map(|(t, _)| t)
-        .collect();
     assert_eq!(supervision["first_engaged_s"], times[first]);
     let severities = column(&rows, "supervisor_severity", number);
     let highest = severities.iter().copied().fold(0.0, f64::max);
-    let peak = supervision["expected_severity_max"].as_f64().unwrap();
-    assert!(
-        highest > 1.0 && (peak / highest - 1.0).abs() < 1e-6,
-        "{peak}, {highest}"
-    );
+    let off = told("expected_severity_max") / highest - 1.0;
+    assert!(highest > 1.0 && off.abs() < 1e-6, "{off}, {highest}");
     assert_eq!(supervision["sensor_faults"], 0);
     assert_eq!(supervision["landings"], 1);
     assert_eq!(supervision["flight_record_crc"], supervisor::crc_of(&bytes));
     // It begins on the wall at 0.35 m/s, which nobody has seen coming; the later impacts are slower.
-    let fastest = supervision["impact_speed_max_m_s"].as_f64().unwrap();
+    let fastest = told("impact_speed_max_m_s");
     assert!(fastest > 0.1 && fastest < 0.35, "{fastest}");
     assert_eq!(supervision["coast_down"], false);
-    let report = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(report.contains("What happened: supervisor"));
-    assert!(!report.contains(">nothing<"));
+    let report = folder.text("out/report.html");
+    has(&report, &["What happened: supervisor"]);
+    lacks(&report, &[">nothing<"]);
     // The data for the script has them once more.
     let (drawn, data) = report.split_once("<script").unwrap();
     for event in ["ENGAGED", "HANDOVER", "LEVITATED", "RECORD_FROZEN"] {
-        assert!(data.contains(event), "{event}");
-        let (shown, all) = (drawn.matches(event).count(), with(event));
-        assert!(all > 0 && shown == all, "{event}: {shown} of {all}");
+        has(data, &[event]);
+        let (told, said) = (drawn.matches(event).count(), with(event));
+        assert!(said > 0 && told == said, "{event}: {told} of {said}");
     }
 }
 
@@ -264,22 +222,13 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
 /// policies without a supervisor have nothing there.
 #[test]
 fn levitation_is_in_the_trace() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    assert!(
-        run_scene(&scene_path("overload_then_release"), &out, &[])
-            .status
-            .success()
-    );
-    let rows = |policy: &str| -> Vec<Row> {
-        let rows = rows_of(&out, policy);
-        let between = column(&rows, "mode_change", |f| *f == Field::Bool(true));
-        let both = rows.into_iter().zip(between);
-        both.filter(|(_, between)| !between)
-            .map(|(row, _)| row)
-            .collect()
-    };
-    let (supervised, alone) = (rows("supervisor"), rows("levitation"));
+    let folder = Folder::fresh();
+    folder.ran("run @overload_then_release --out out").good();
+    let [supervised, alone] = ["supervisor", "levitation"].map(|policy| {
+        let rows = rows_of(&folder, policy);
+        let between = between(&rows);
+        of_samples(rows, &between)
+    });
     let asked = column(&supervised, "levitation_x_n", number);
     let commanded = column(&alone, "commanded_x_n", number);
     let modes = column(&supervised, "supervisor_mode", word);
@@ -288,31 +237,23 @@ fn levitation_is_in_the_trace() {
     for at in 0..engaged {
         let (asked, commanded) = (asked[at], commanded[at + 1]);
         // In single precision at the supervisor's border.
-        assert!(
-            (asked - commanded).abs() <= 1e-6 * commanded.abs(),
-            "{at}: {asked}, {commanded}"
-        );
+        let same = (asked - commanded).abs() <= 1e-6 * commanded.abs();
+        assert!(same, "{at}: {asked}, {commanded}");
     }
     for name in ["levitation_x_n", "levitation_y_n", "supervisor_severity"] {
-        assert!(
-            column(&alone, name, number).iter().all(|x| *x == 0.0),
-            "{name}"
-        );
+        let all = column(&alone, name, number);
+        assert!(all.iter().all(|x| *x == 0.0), "{name}");
     }
     for name in ["supervisor_mode", "supervisor_limits", "supervisor_events"] {
-        assert!(
-            column(&alone, name, word).iter().all(String::is_empty),
-            "{name}"
-        );
+        let all = column(&alone, name, word);
+        assert!(all.iter().all(String::is_empty), "{name}");
     }
 
     // Numbers say what the words say, as the documentation has them; bits are there where names are.
     let text = fs::read_to_string(root().join("docs/src/host/results.md")).unwrap();
-    let docs = |column: &str| {
-        let line = text
-            .lines()
-            .find(|l| l.starts_with(&format!("| `{column}_code`")));
-        line.unwrap().to_owned()
+    let told = |column: &str| {
+        let begins = format!("| `{column}_code`");
+        text.lines().find(|l| l.starts_with(&begins)).unwrap()
     };
     use supervisor::Mode as S;
     let modes = [
@@ -325,36 +266,22 @@ fn levitation_is_in_the_trace() {
         S::SensorFault,
         S::HandedBack,
     ];
-    let all: Vec<String> = modes
-        .iter()
-        .map(|mode| format!("{} `{}`", *mode as u8, mode.name()))
-        .collect();
-    assert!(docs("supervisor_mode").contains(&all.join(", ")), "{all:?}");
+    let all = modes.map(|mode| format!("{} `{}`", mode as u8, mode.name()));
+    has(told("supervisor_mode"), &[&all.join(", ")]);
     for name in ["mode", "supervisor_mode"] {
-        let (line, numbers) = (
-            docs(name),
-            column(&supervised, &format!("{name}_code"), number),
-        );
+        let numbers = column(&supervised, &format!("{name}_code"), number);
         let words = column(&supervised, name, word);
         assert!(words.iter().collect::<BTreeSet<_>>().len() > 1, "{name}");
         for (number, word) in numbers.iter().zip(&words) {
-            assert!(
-                line.contains(&format!("{number} `{word}`")),
-                "{number}: {word}"
-            );
+            has(told(name), &[&format!("{number} `{word}`")]);
         }
     }
     let nothing = |rows: &[Row], name: &str| -> Vec<bool> {
         let bits = column(rows, &format!("{name}_code"), number);
-        let words = column(rows, name, word);
-        (bits.iter().zip(&words)).for_each(|(bits, word)| {
-            let names = word.split_whitespace().count();
-            assert_eq!(
-                (*bits as u32).count_ones() as usize,
-                names,
-                "{name}: {bits}, {word}"
-            );
-        });
+        for (bits, word) in bits.iter().zip(&column(rows, name, word)) {
+            let (bits, names) = (*bits as u32, word.split_whitespace().count());
+            assert_eq!(bits.count_ones() as usize, names, "{name}: {bits}, {word}");
+        }
         bits.iter().map(|bits| *bits == 0.0).collect()
     };
     for name in ["supervisor_limits", "supervisor_events"] {
@@ -368,27 +295,22 @@ fn levitation_is_in_the_trace() {
 /// Traces and records of policies that a scene has no longer would be taken for its results.
 #[test]
 fn traces_of_an_earlier_run_go() {
-    let folder = TempDir::new().unwrap();
-    let all = "policies = [\"passive\", \"radial\", \"levitation\", \"supervisor\"]";
-    let out = folder.path().join("out");
-    assert!(
-        run_scene(&short_scene(folder.path(), |t| t), &out, &[])
-            .status
-            .success()
-    );
-    assert!(names(&out).contains(&"trace_supervisor.parquet".to_owned()));
+    let folder = short_scene(&[]);
+    folder.ran(RUN).good();
+    assert!(folder.at("out/trace_supervisor.parquet").exists());
     for name in [
         "record_supervisor.bin",
         "record_mine.bin",
         "trace_mine.parquet",
     ] {
-        fs::write(out.join(name), "kept or not").unwrap();
+        folder.put(&format!("out/{name}"), "kept or not");
     }
-    fs::create_dir(out.join("trace_damping.parquet")).unwrap();
-    let fewer = short_scene(folder.path(), |t| t.replace(all, "policies = [\"radial\"]"));
-    assert!(run_scene(&fewer, &out, &[]).status.success());
+    fs::create_dir(folder.at("out/trace_damping.parquet")).unwrap();
+    let all = "[\"passive\", \"radial\", \"levitation\", \"supervisor\"]";
+    folder.put("short.toml", edited(&short(), &[(all, "[\"radial\"]")]));
+    folder.ran(RUN).good();
     assert_eq!(
-        names(&out),
+        folder.names("out"),
         [
             "record_mine.bin",
             "report.html",
@@ -403,15 +325,13 @@ fn traces_of_an_earlier_run_go() {
 /// A supervisor that had nothing to do has a table that says so.
 #[test]
 fn a_table_of_nothing_says_nothing() {
-    let folder = TempDir::new().unwrap();
-    let scene = short_scene(folder.path(), |t| {
-        let calm = t.split("[[disturbance]]").next().unwrap();
-        calm.to_owned()
-    });
-    let out = folder.path().join("out");
-    let result = run_scene(&scene, &out, &[]);
-    assert!(result.status.success());
-    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    let folder = Folder::fresh();
+    folder.put(
+        "short.toml",
+        short().split("[[disturbance]]").next().unwrap(),
+    );
+    folder.ran(RUN).good();
+    let report = folder.text("out/report.html");
     let (_, table) = report.split_once("What happened: supervisor").unwrap();
-    assert!(table.contains("<td class=\"words\" colspan=\"5\">nothing</td>"));
+    has(table, &["<td class=\"words\" colspan=\"5\">nothing</td>"]);
 }
