@@ -21,6 +21,7 @@ fn a_lost_axis_leaves_the_best_of_the_other() {
             assert_eq!(command.mode, Mode::BackwardWhirl);
             assert_eq!(command.events.contains(Events::AXIS_LOST), i == 200);
             (bounds.check(&per_unit(&with.scaling(), command), lost)).unwrap();
+            assert_eq!(command.force_n[1 - axis], 0.0, "{i}");
             // Braking value of the force where it acts, half a tick later: against b̂ + μ·n̂.
             let angle = WHIRL_STEP * (i as f32 + 0.5);
             let (n, b) = ([angle.cos(), -angle.sin()], [-angle.sin(), -angle.cos()]);
