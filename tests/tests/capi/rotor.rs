@@ -26,7 +26,7 @@ fn pair_of_rust() -> String {
     let config = Rig::config();
     let mut rotor = RotorSupervisor::<512>::new(&shaft(), &[config; 2]).unwrap();
     let mut ends = [Rig::new(), Rig::new()];
-    let (mut told, mut asked) = (0, 0);
+    let (mut engaged, mut asked) = (0, 0);
     while ends[0].tick < Rig::TICKS {
         if let Some(config) = ends[0].reconfigures() {
             rotor.reconfigure(&shaft(), &[config; 2]).unwrap();
@@ -36,13 +36,13 @@ fn pair_of_rust() -> String {
         for (end, command) in ends.iter_mut().zip(&command.planes) {
             end.actuate(command);
         }
-        told += command.other_engaged.map(u32::from).iter().sum::<u32>();
+        engaged += command.other_engaged.map(u32::from).iter().sum::<u32>();
         asked += u32::from(command.coast_down);
     }
     let [first, second] = ends;
-    assert!(told > 100 && first.hash != second.hash, "{told}");
+    assert!(engaged > 100 && first.hash != second.hash, "{engaged}");
     format!(
-        "ticks {} told {told} coast-down {asked} hashes 0x{:08x} 0x{:08x}",
+        "ticks {} engaged {engaged} coast-down {asked} hashes 0x{:08x} 0x{:08x}",
         first.tick, first.hash, second.hash
     )
 }

@@ -380,7 +380,7 @@ pub fn swings(mode: &MachineMode) -> bool {
 }
 
 /// Those that turn or swing.
-pub fn oscillating(modes: &[MachineMode]) -> Vec<LoopMode> {
+pub(crate) fn oscillating(modes: &[MachineMode]) -> Vec<LoopMode> {
     let turning = modes.iter().filter(|mode| swings(mode));
     turning
         .map(|mode| LoopMode {

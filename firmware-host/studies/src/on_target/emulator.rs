@@ -172,7 +172,7 @@ pub struct Ended {
 
 impl Ended {
     /// Output and errors in one.
-    pub fn all_output(&self) -> String {
+    pub(crate) fn all_output(&self) -> String {
         format!("{}{}", String::from_utf8_lossy(&self.output), self.errors)
     }
 }
